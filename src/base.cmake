@@ -1,0 +1,8 @@
+# byssus_module(NAME SOURCES...): an object library of one module
+function(byssus_module name)
+  add_library(${name} OBJECT ${ARGN})
+  target_link_libraries(${name} PUBLIC byssus_flags)
+  set(MODULES ${MODULES} ${name} PARENT_SCOPE)
+endfunction()
+
+byssus_module(base src/keys.c src/scene.c src/array.c src/backend.c src/surface.c src/output.c src/checkpoint.c)

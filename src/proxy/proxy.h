@@ -1,0 +1,59 @@
+/* proxy.h - surface proxy particles: curvature, adaptive sampling, supports, contacts with the fluid, transfer to nodes. */
+#ifndef BY_PROXY_H
+#define BY_PROXY_H
+
+#include "keys.h"
+#include "sph/sph.h"
+
+typedef struct _p_Proxy *Proxy;
+
+typedef enum { PROXY_KERNEL_HALF_SPACE, PROXY_KERNEL_ELLIPSOID } ProxyKernel;
+typedef enum { PROXY_RANGE_ROBUST, PROXY_RANGE_MINMAX } ProxyRange;
+
+/* Parameters of `<body>.proxy:` and `<obstacle>.proxy:`; ProxyKeys[] (proxy_keys.c) declares each. */
+typedef struct {
+  PetscBool adaptive;            /* density follows curvature; false = uniform, kappa-bar = 1                */
+  PetscReal eta_min, eta_max;    /* range of the normalised curvature                                        */
+  PetscReal inset;               /* ellipsoid kernel: proxies inward by this many dx; negative = calibrated  */
+  PetscReal factor;              /* on the boundary volume; 0 = calibrated value of kernel and h/dx          */
+  PetscReal resample_tolerance;  /* edge or area ratio change that triggers resampling; 0 = every step       */
+  PetscReal feature_angle;       /* [degree] dihedral beyond which an edge is sharp                          */
+  int       kernel;              /* ProxyKernel                                                              */
+  int       range;               /* ProxyRange                                                               */
+} ProxyParams;
+
+BY_EXTERN const Key ProxyKeys[];
+
+/* life: Create -> SetSurface -> SetFluid -> SetFromOptions (prefix "<body>_proxy_") -> SetUp -> Update, Contacts, Transfer */
+BY_EXTERN PetscErrorCode ProxyCreate(MPI_Comm comm, const char name[], Proxy *proxy);
+BY_EXTERN PetscErrorCode ProxyGetParams(Proxy proxy, ProxyParams **params);
+/* n_nodes nodes (also interior ones of a body: only those in triangles matter), triangles outward; copied */
+BY_EXTERN PetscErrorCode ProxySetSurface(Proxy proxy, PetscInt n_nodes, const PetscReal X[], PetscInt n_triangles, const PetscInt triangles[]);
+/* support radius h [m], spacing dx [m], kernel of the fluid; periodic box of the domain for minimal images */
+BY_EXTERN PetscErrorCode ProxySetFluid(Proxy proxy, SPH sph);
+BY_EXTERN PetscErrorCode ProxySetFromOptions(Proxy proxy);
+BY_EXTERN PetscErrorCode ProxySetUp(Proxy proxy);
+BY_EXTERN PetscErrorCode ProxyView(Proxy proxy, PetscViewer viewer);
+BY_EXTERN PetscErrorCode ProxyDestroy(Proxy *proxy);
+
+/* move proxies with the surface: current nodal positions and (mean) velocities, n_nodes x 3; v NULL = at rest.
+   Resamples when the surface has changed by more than the tolerance. */
+BY_EXTERN PetscErrorCode ProxyUpdate(Proxy proxy, const PetscReal x[], const PetscReal v[]);
+/* set only the velocities that the fluid sees */
+BY_EXTERN PetscErrorCode ProxySetVelocity(Proxy proxy, const PetscReal v[]);
+/* contacts with the fluid at its current sorted positions; arrays owned by the proxy, valid until the next call */
+BY_EXTERN PetscErrorCode ProxyGetContacts(Proxy proxy, SPHContacts *contacts);
+
+/* barycentric interpolation of proxies: 3 node numbers and 3 weights per proxy, borrowed until the next Update; with it the coupler
+   builds its wall operator: v_b = sum_a w_ba v_a */
+BY_EXTERN PetscErrorCode ProxyGetInterpolation(Proxy proxy, PetscInt *n_proxies, const PetscInt *nodes[], const PetscReal *weights[]);
+/* adds to nodal forces (n_nodes x 3 [N]) the forces on proxies; total force and total moment (about any point) equal those
+   that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces at the proxies) */
+BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[]);
+
+/* proxies for output: positions, normals [n x 3], curvature kappa-bar, area; borrowed */
+BY_EXTERN PetscErrorCode ProxyGetPoints(Proxy proxy, PetscInt *n, const PetscReal *x[], const PetscReal *normal[], const PetscReal *kappa[], const PetscReal *area[]);
+/* sum over vertices of Gaussian curvature times area (2 pi chi on a closed surface) */
+BY_EXTERN PetscErrorCode ProxyGetTotalCurvature(Proxy proxy, PetscReal *total);
+
+#endif

@@ -1,0 +1,131 @@
+/* sph.h - the incompressible fluid: smoothed particles, pressure solvers, planar walls. */
+#ifndef BY_SPH_H
+#define BY_SPH_H
+
+#include "keys.h"
+
+typedef struct _p_SPH *SPH;
+
+typedef enum { SPH_SOLVER_PCG, SPH_SOLVER_JACOBI } SPHSolver;
+typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2 } SPHKernelType;
+typedef enum { SPH_PRECISION_SINGLE, SPH_PRECISION_DOUBLE } SPHPrecision;
+
+/* Parameters of the section `sph:`; SPHKeys[] (sph_keys.c) declares each with unit, default and range. */
+typedef struct {
+  PetscReal spacing;          /* dx [m], initial particle spacing; required                              */
+  PetscReal density;          /* rho0 [kg/m^3]                                                           */
+  PetscReal viscosity;        /* mu [Pa s], 0 = inviscid: no viscous pass at all                         */
+  PetscReal support;          /* h / dx, support radius over spacing                                     */
+  PetscReal tolerance;        /* mean residual of the pressure solve over rho0                           */
+  PetscInt  max_iterations;   /* per step; reaching it is reported                                       */
+  PetscReal cfl;              /* of 0.4                                                                  */
+  PetscReal time_step;        /* fixed step [s]; 0 = adaptive                                            */
+  PetscReal max_time_step;    /* upper bound [s] of the adaptive step; 0 = none                          */
+  PetscReal relax_time;       /* tau [s] of the density source; 0 = 0.5 sqrt(h/g)                        */
+  PetscReal wall_factor;      /* s of method 2; 0 = calibrated value of kernel and h/dx                  */
+  PetscReal mean_velocity[3]; /* target of the body-force controller [m/s]; 0 0 0 = no controller        */
+  PetscBool free_surface;     /* clamp p >= 0                                                            */
+  int       solver;           /* SPHSolver                                                               */
+  int       kernel;           /* SPHKernelType                                                           */
+  int       precision;        /* SPHPrecision of the pair loops; positions and velocities are kept in double */
+  Names     fill;             /* names of blocks sph.<name>: read by the coupler's scene builder         */
+} SPHParams;
+
+BY_EXTERN const Key SPHKeys[];
+
+/* What one surface (elastic body or obstacle) does to the particles within reach, made by src/proxy each step.
+   phi is the part of the kernel's volume that lies in the body (method 2: lambda; 0 far away), grad its gradient with
+   respect to the particle's position. share says which proxy gives which part: sum over a particle's pairs of share =
+   grad. SPH merges surfaces and planes: phi_i = 1 - prod_k (1 - phi_ik), G_i = rho0 grad phi_i, and scales shares alike. */
+typedef struct {
+  PetscInt         n_touched;     /* particles with phi > 0                                                */
+  const PetscInt  *particle;      /* n_touched, ascending particle index (current sorted order)            */
+  const PetscReal *position;      /* n_touched x 3 [m], the periodic image of the particle that touches    */
+  const PetscReal *phi;           /* n_touched [1], calibration factor s of the proxy kernel included      */
+  const PetscReal *grad;          /* n_touched x 3 [1/m]                                                   */
+  const PetscInt  *start;         /* n_touched + 1, into proxy[] and share[]                               */
+  const PetscInt  *proxy;         /* proxy index of each pair                                              */
+  const PetscReal *share;         /* n_pairs x 3 [1/m]                                                     */
+  PetscInt         n_proxies;
+  const PetscReal *velocity;      /* n_proxies x 3 [m/s], mean over the coming step; NULL = at rest        */
+  PetscReal       *force;         /* n_proxies x 3 [N], out: force of the fluid on each proxy; may be NULL */
+  PetscReal        total[3];      /* [N] out: total force of the fluid on this surface                     */
+  PetscReal        moment[3];     /* [N m] out: its moment about the origin, applied where the particles are */
+  PetscReal        power;         /* [W] out: sum of force . velocity as the fluid sees it                  */
+} SPHContacts;
+
+/* Compliant walls (method 5.3): adds to a wall-normal density-rate operator. Given p~ = p/rho0^2 of every particle
+   (length n, double), adds to Ap the term of the solids' velocity response. Must be linear, symmetric and positive. */
+typedef PetscErrorCode (*SPHResponse)(void *ctx, PetscInt n, const PetscReal p[], PetscReal Ap[]);
+
+/* life: Create -> Set... -> SetFromOptions (-sph_*) -> SetUp -> steps -> Destroy */
+BY_EXTERN PetscErrorCode SPHCreate(MPI_Comm comm, SPH *sph);
+BY_EXTERN PetscErrorCode SPHGetParams(SPH sph, SPHParams **params); /* writable until SetUp */
+BY_EXTERN PetscErrorCode SPHSetFromOptions(SPH sph);
+/* walls: bit 2k = plane at min of axis k, bit 2k+1 = plane at max; periodic: bit k = axis k */
+BY_EXTERN PetscErrorCode SPHSetDomain(SPH sph, const PetscReal min[3], const PetscReal max[3], unsigned walls, unsigned periodic);
+BY_EXTERN PetscErrorCode SPHSetGravity(SPH sph, const PetscReal g[3]);
+/* positions n x 3 [m], velocities n x 3 [m/s]; may be called several times before SetUp; copied */
+BY_EXTERN PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const PetscReal v[]);
+BY_EXTERN PetscErrorCode SPHSetUp(SPH sph);
+BY_EXTERN PetscErrorCode SPHView(SPH sph, PetscViewer viewer);
+BY_EXTERN PetscErrorCode SPHDestroy(SPH *sph);
+
+/* One step, driven by the coupler:
+     SPHUpdateNeighbors   sort particles, neighbour lists, planar walls (phi of the planes)
+     SPHSetContacts       contacts of all surfaces for the current positions (arrays are borrowed until the next call)
+     SPHGetTimeStep       largest permitted step [s] for the current state
+     SPHPredict           density, gravity, viscosity, mean-velocity controller: v* = v + dt a
+     SPHSolvePressure     pressure for rest density; response may be NULL; may be called again with other wall velocities
+     SPHGetForces         writes contacts[k].force and the wall forces from the current pressure (and viscous forces)
+     SPHAdvance           v = v* + dt a_p, x += dt v (symplectic Euler); positions wrapped into periodic directions */
+BY_EXTERN PetscErrorCode SPHUpdateNeighbors(SPH sph);
+BY_EXTERN PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts[]);
+BY_EXTERN PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt);
+BY_EXTERN PetscErrorCode SPHPredict(SPH sph, PetscReal dt);
+BY_EXTERN PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, void *ctx);
+BY_EXTERN PetscErrorCode SPHGetForces(SPH sph);
+BY_EXTERN PetscErrorCode SPHAdvance(SPH sph, PetscReal dt);
+
+/* Factor c = d phi_i / d phi_ik of the union for touched particle t of surface k (length n_touched): G_ik = rho0 c grad_ik.
+   Valid after SPHSetContacts; the compliant-wall operator of the coupler needs it. */
+BY_EXTERN PetscErrorCode SPHGetUnionFactors(SPH sph, PetscInt surface, const PetscReal *c[]);
+
+/* Move an initial cloud until no particle is denser than rest density by more than `tol` (mean compression), velocities and
+   time untouched; surfaces are asked for through `contacts(ctx, sph)`, which must call SPHSetContacts (NULL: none). */
+BY_EXTERN PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCode (*contacts)(void *, SPH), void *ctx);
+
+/* state in the current sorted order, double; arrays are borrowed, valid until the next SPHUpdateNeighbors */
+BY_EXTERN PetscErrorCode SPHGetSize(SPH sph, PetscInt *n);
+BY_EXTERN PetscErrorCode SPHGetState(SPH sph, const PetscReal *x[], const PetscReal *v[], const PetscReal *p[], const PetscReal *rho[], const PetscInt *id[]);
+BY_EXTERN PetscErrorCode SPHGetMass(SPH sph, PetscReal *particle_mass);
+BY_EXTERN PetscErrorCode SPHGetSupport(SPH sph, PetscReal *h);
+BY_EXTERN PetscErrorCode SPHGetDomain(SPH sph, PetscReal min[3], PetscReal max[3], unsigned *walls, unsigned *periodic);
+/* restart: all particles by id (0..n-1): x, v [n x 3], p [n] (warm start); and the controller's state */
+BY_EXTERN PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const PetscReal x[], const PetscReal v[], const PetscReal p[]);
+
+/* Shepard-normalised value at a point: pressure [Pa] and velocity [m/s]; *inside = PETSC_FALSE where no fluid is within h */
+BY_EXTERN PetscErrorCode SPHInterpolate(SPH sph, const PetscReal at[3], PetscReal *pressure, PetscReal velocity[3], PetscBool *inside);
+/* height of the water [m] above the domain's floor in the column of radius h around (x, y), along -gravity */
+BY_EXTERN PetscErrorCode SPHGetHeight(SPH sph, const PetscReal at[3], PetscReal *height);
+/* force [N] of the fluid on the six planes, order xmin xmax ymin ymax zmin zmax */
+BY_EXTERN PetscErrorCode SPHGetWallForces(SPH sph, PetscReal force[18]);
+
+typedef struct {
+  PetscReal kinetic, potential;    /* [J]                                                                  */
+  PetscReal momentum[3];           /* [kg m/s]                                                             */
+  PetscReal angular[3];            /* about the origin [kg m^2/s]                                          */
+  PetscReal compression_mean;      /* mean of max(0, rho - rho0)/rho0 over all particles                   */
+  PetscReal compression_max;
+  PetscReal speed_max, speed_rms;  /* [m/s]                                                                */
+  PetscReal viscous_loss;          /* [J] since the start                                                  */
+  PetscInt  iterations;            /* of the last pressure solve                                           */
+  PetscBool converged;             /* of the last pressure solve                                           */
+  PetscReal body_force[3];         /* of the mean-velocity controller [m/s^2]                              */
+} SPHStats;
+BY_EXTERN PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats);
+
+/* A step that cannot go on (NaN, particle out of the domain) returns BY_ERR_BREAKDOWN; this tells what and where. */
+BY_EXTERN PetscErrorCode SPHGetBreakdown(SPH sph, const char **message);
+
+#endif

@@ -1,0 +1,26 @@
+/* surface.h - closed triangle surfaces: reading from a file, inside test, distance. Geometry only, no physics. */
+#ifndef BY_SURFACE_H
+#define BY_SURFACE_H
+
+#include "base.h"
+
+typedef struct {
+  PetscInt   n_nodes, n_triangles;
+  PetscReal *x;         /* n_nodes x 3 [m]      */
+  PetscInt  *triangles; /* n_triangles x 3, outward */
+} Surface;
+
+/* Read a triangle surface (STL, OFF, OBJ, PLY, gmsh .msh) and orient it outward. User errors (cannot read, no triangles, not closed: the
+   first open edge is named) are printed, BY_ERR_INPUT is returned. */
+BY_EXTERN PetscErrorCode SurfaceRead(const char path[], PetscReal scale, const PetscReal translate[3], Surface *surface);
+BY_EXTERN PetscErrorCode SurfaceDestroy(Surface *surface);
+
+/* Generalised winding number (van Oosterom & Strackee 1983 solid angles) of points against triangles with current node positions:
+   inside where > 0.5. Points outside the bounding box are skipped (0). OpenMP over points. */
+BY_EXTERN PetscErrorCode SurfaceWinding(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles,
+                                        const PetscInt triangles[], PetscReal winding[]);
+/* Unsigned distance [m] to the surface, exact up to `reach`, anything larger beyond. */
+BY_EXTERN PetscErrorCode SurfaceDistance(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles,
+                                         const PetscInt triangles[], PetscReal reach, PetscReal distance[]);
+
+#endif

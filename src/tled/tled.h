@@ -1,0 +1,89 @@
+/* tled.h - the nonlinear elastic solid: total Lagrangian explicit dynamics on tetrahedra. */
+#ifndef BY_TLED_H
+#define BY_TLED_H
+
+#include "keys.h"
+#include <petscmat.h>
+
+typedef struct _p_TLED *TLED;
+
+typedef enum { TLED_MATERIAL_NEO_HOOKEAN, TLED_MATERIAL_ST_VENANT_KIRCHHOFF } TLEDMaterial;
+typedef enum { TLED_ELEMENT_AUTO, TLED_ELEMENT_T4, TLED_ELEMENT_ANP } TLEDElement;
+
+/* Parameters of a body's section `<body>:`; TLEDKeys[] (tled_keys.c) declares each. */
+typedef struct {
+  char      mesh[PETSC_MAX_PATH_LEN]; /* gmsh .msh with named physical groups; required                     */
+  PetscReal density;                  /* rho [kg/m^3]                                                        */
+  PetscReal young, poisson;           /* E [Pa], nu [1]                                                      */
+  PetscReal damping;                  /* alpha [1/s] of D = alpha M                                          */
+  PetscReal stiffness_damping;        /* beta [s] of a stiffness-proportional viscous stress; 0 = none       */
+  PetscReal safety;                   /* of the critical step                                                */
+  PetscReal scale;                    /* mesh coordinates times this                                         */
+  PetscReal translate[3];             /* [m], after scaling                                                  */
+  PetscReal velocity[3];              /* initial velocity [m/s]                                              */
+  PetscReal prescribed_velocity[3];   /* of the groups in `prescribed` [m/s]                                 */
+  Names     fixed;                    /* physical groups held                                                */
+  Names     prescribed;               /* physical groups moved                                               */
+  Names     wetted;                   /* surface groups in contact with fluid; empty = whole boundary        */
+  int       material;                 /* TLEDMaterial                                                        */
+  int       element;                  /* TLEDElement; auto = anp above nu 0.4, else t4                        */
+} TLEDParams;
+
+BY_EXTERN const Key TLEDKeys[];
+
+/* life: Create -> GetParams/SetFromOptions (options prefix "<body>_") -> SetGravity -> SetUp -> Advance -> Destroy.
+   SetUp reads the mesh through DMPlex; user errors (missing mesh, no such group, not tetrahedra, inverted element) are
+   printed as design.md says, and BY_ERR_INPUT is returned. */
+BY_EXTERN PetscErrorCode TLEDCreate(MPI_Comm comm, const char name[], TLED *tled);
+BY_EXTERN PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params);
+BY_EXTERN PetscErrorCode TLEDSetFromOptions(TLED tled);
+BY_EXTERN PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3]);
+BY_EXTERN PetscErrorCode TLEDSetUp(TLED tled);
+BY_EXTERN PetscErrorCode TLEDView(TLED tled, PetscViewer viewer);
+BY_EXTERN PetscErrorCode TLEDDestroy(TLED *tled);
+
+BY_EXTERN PetscErrorCode TLEDGetSize(TLED tled, PetscInt *n_nodes, PetscInt *n_tets);
+/* tetrahedra n_tets x 4 and reference coordinates n_nodes x 3, borrowed */
+BY_EXTERN PetscErrorCode TLEDGetMesh(TLED tled, const PetscInt *tets[], const PetscReal *X[]);
+/* boundary triangles, n x 3 node numbers, outward by the right-hand rule; wetted_only picks the groups of `wetted` */
+BY_EXTERN PetscErrorCode TLEDGetSurface(TLED tled, PetscBool wetted_only, PetscInt *n_triangles, const PetscInt *triangles[]);
+/* nodes of a physical group; unknown group: n = 0 */
+BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
+BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* no fixed or prescribed node        */
+BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]); /* n_nodes             */
+
+/* state: displacement u, velocity v (at the same time level, see TLEDAdvance), external force f: PETSc Vecs of block size 3,
+   owned by the TLED; change them between Advance calls only */
+BY_EXTERN PetscErrorCode TLEDGetVectors(TLED tled, Vec *u, Vec *v, Vec *f);
+/* current coordinates X + u and velocities as borrowed arrays, n_nodes x 3 */
+BY_EXTERN PetscErrorCode TLEDGetPositions(TLED tled, const PetscReal *x[], const PetscReal *v[]);
+
+/* critical step 2/omega_max of the current state by power iteration [s], without the safety factor */
+BY_EXTERN PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt);
+/* Advance by exactly `dt` in the fewest equal substeps <= safety * critical step, external force f held, leapfrog in kick-drift
+   form (v += a dt_s; u += v dt_s); n_substeps is what was taken. An inverted element, NaN or a step over the limit returns
+   BY_ERR_BREAKDOWN, TLEDGetBreakdown tells element, position and time. The critical step is renewed as the body deforms. */
+BY_EXTERN PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps);
+BY_EXTERN PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps);
+BY_EXTERN PetscErrorCode TLEDGetBreakdown(TLED tled, const char **message);
+/* snapshot of u, v, time, energies and back (one level; the staggered loop runs a step twice) */
+BY_EXTERN PetscErrorCode TLEDSave(TLED tled);
+BY_EXTERN PetscErrorCode TLEDRestore(TLED tled);
+BY_EXTERN PetscErrorCode TLEDGetTime(TLED tled, PetscReal *time);
+BY_EXTERN PetscErrorCode TLEDSetTime(TLED tled, PetscReal time);
+
+/* internal force f(u) [N] at displacement u, and tangent K(u) = df/du as an n x n AIJ matrix of block size 3 (created on first
+   call when *K is NULL, rows of constrained nodes are kept: the caller treats them) */
+BY_EXTERN PetscErrorCode TLEDInternalForce(TLED tled, Vec u, Vec f);
+BY_EXTERN PetscErrorCode TLEDTangent(TLED tled, Vec u, Mat *K);
+
+typedef struct {
+  PetscReal kinetic, strain, gravity_potential; /* [J]                                      */
+  PetscReal damping_loss, external_work;        /* [J] since the start                      */
+  PetscReal momentum[3], angular[3];            /* about the origin                         */
+  PetscReal volume, volume_reference;           /* [m^3]                                    */
+  PetscReal speed_max;                          /* [m/s]                                    */
+} TLEDStats;
+BY_EXTERN PetscErrorCode TLEDGetStats(TLED tled, TLEDStats *stats);
+
+#endif
