@@ -5,4 +5,9 @@ function(byssus_module name)
   set(MODULES ${MODULES} ${name} PARENT_SCOPE)
 endfunction()
 
-byssus_module(base src/keys.c src/scene.c src/array.c src/backend.c src/surface.c src/output.c src/checkpoint.c)
+byssus_module(base src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/array.c src/backend.c src/surface.c
+  src/output.c src/checkpoint.c)
+
+# messages quote what the user wrote and may cut it short: truncation by snprintf is meant
+set_source_files_properties(src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c PROPERTIES COMPILE_OPTIONS
+  "-Wno-format-truncation;-Wno-restrict")

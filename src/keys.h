@@ -14,7 +14,7 @@ typedef enum {
   KEY_BOOL,   /* PetscBool                                                        */
   KEY_VEC3,   /* PetscReal[3]                                                     */
   KEY_STRING, /* char[PETSC_MAX_PATH_LEN], a free string or an output path        */
-  KEY_FILE,   /* char[PETSC_MAX_PATH_LEN], an existing file, relative to the scene file */
+  KEY_FILE,   /* char[PETSC_MAX_PATH_LEN], an existing file, relative to the scene file (on the command line: to the working directory) */
   KEY_NAMES,  /* Names, a list of free names                                      */
   KEY_CHOICE  /* int (an enum), one word of a list                                */
 } KeyType;
@@ -24,7 +24,8 @@ typedef struct {
   char     name[BY_NAMES_MAX][BY_NAME_MAX];
 } Names;
 
-/* range flags: which ends of [lo, hi] are open, and that a key must be given */
+/* range flags: which ends of [lo, hi] are open, and that a key must be given. A bound of 1e300 and beyond is none; lo == hi means
+   that any finite number will do. */
 enum { KEY_LO_OPEN = 1, KEY_HI_OPEN = 2, KEY_REQUIRED = 4 };
 
 typedef struct {
@@ -53,5 +54,12 @@ BY_EXTERN PetscErrorCode KeysView(const Key keys[], const void *params, PetscVie
 
 /* Check one textual value against a row; `why` gets what is wrong and what is allowed, empty when the value is good. */
 BY_EXTERN PetscErrorCode KeyCheck(const Key *key, const char value[], char why[], size_t n_why);
+
+/* What may be written for a key, as in "a finite number > 0 [Pa s]". */
+BY_EXTERN PetscErrorCode KeyDescribe(const Key *key, char text[], size_t n);
+
+/* Edit distance of two words without regard to case, and whether it is small enough to ask "did you mean". */
+BY_EXTERN PetscInt  KeyDistance(const char a[], const char b[]);
+BY_EXTERN PetscBool KeyIsNear(const char word[], const char known[]);
 
 #endif

@@ -28,6 +28,8 @@ typedef struct {
    (ksp_, pc_, snes_, mat_, vec_, log_, options_, malloc_, info, help) pass through untouched. */
 BY_EXTERN PetscErrorCode SceneRead(const char file[], int argc, char *argv[], const SceneSection sections[], Scene *scene);
 BY_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
+/* warn about options that passed through to PETSc and that nothing in the run has asked for */
+BY_EXTERN PetscErrorCode SceneReportUnused(Scene scene);
 
 BY_EXTERN PetscErrorCode SceneHas(Scene scene, const char section[], PetscBool *present);       /* "sph", "flap.proxy" */
 BY_EXTERN PetscErrorCode SceneGetText(Scene scene, const char *text[]);                          /* the file as read    */

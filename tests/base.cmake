@@ -1,1 +1,2 @@
 # tests of base
+byssus_test(unit/scene/test_scene base)
