@@ -8,7 +8,7 @@
   #define PETSC_SUCCESS 0 /* appeared in PETSc 3.19 */
 #endif
 
-#define BY_EXTERN PETSC_VISIBILITY_PUBLIC
+#define BY_EXTERN extern PETSC_VISIBILITY_PUBLIC
 
 /* exit statuses of the program (docs: README, "Exit status") */
 enum { BY_EXIT_DONE = 0, BY_EXIT_FAILURE = 1, BY_EXIT_INPUT = 2, BY_EXIT_BREAKDOWN = 3, BY_EXIT_INTERRUPTED = 130 };

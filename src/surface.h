@@ -12,7 +12,8 @@ typedef struct {
 
 /* Read a triangle surface (STL, OFF, OBJ, PLY, gmsh .msh) and orient it outward. User errors (cannot read, no triangles, not closed: the
    first open edge is named) are printed, BY_ERR_INPUT is returned. */
-BY_EXTERN PetscErrorCode SurfaceRead(const char path[], PetscReal scale, const PetscReal translate[3], Surface *surface);
+/* key: the scene key that named the file ("cylinder.surface"), for InputError */
+BY_EXTERN PetscErrorCode SurfaceRead(const char key[], const char path[], PetscReal scale, const PetscReal translate[3], Surface *surface);
 BY_EXTERN PetscErrorCode SurfaceDestroy(Surface *surface);
 
 /* Generalised winding number (van Oosterom & Strackee 1983 solid angles) of points against triangles with current node positions:

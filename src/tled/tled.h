@@ -69,6 +69,9 @@ BY_EXTERN PetscErrorCode TLEDGetBreakdown(TLED tled, const char **message);
 /* snapshot of u, v, time, energies and back (one level; the staggered loop runs a step twice) */
 BY_EXTERN PetscErrorCode TLEDSave(TLED tled);
 BY_EXTERN PetscErrorCode TLEDRestore(TLED tled);
+/* sum over the substeps of the last Advance of dt_s sum_a x_a x f_a [N m s], the moment that the held forces f really gave (3 numbers, borrowed):
+   the coupler keeps angular momentum with it */
+BY_EXTERN PetscErrorCode TLEDGetAngularImpulse(TLED tled, const PetscReal *impulse[]);
 BY_EXTERN PetscErrorCode TLEDGetTime(TLED tled, PetscReal *time);
 BY_EXTERN PetscErrorCode TLEDSetTime(TLED tled, PetscReal time);
 

@@ -1,0 +1,105 @@
+/* coupler.h - the staggered loop: scene -> fluid, bodies, obstacles -> steps -> run directory. */
+#ifndef BY_COUPLER_H
+#define BY_COUPLER_H
+
+#include "scene.h"
+#include "output.h"
+#include "sph/sph.h"
+#include "tled/tled.h"
+#include "proxy/proxy.h"
+
+#define BY_ERR_INTERRUPTED ((PetscErrorCode)9004) /* Ctrl-C: state saved, resumable */
+
+typedef struct _p_Coupler *Coupler;
+
+typedef enum { COUPLER_SCHEME_AUTO, COUPLER_SCHEME_EXPLICIT, COUPLER_SCHEME_MASS } CouplerScheme;
+typedef enum {
+  PROBE_DISPLACEMENT, /* of a body's material point [m], 3 columns                     */
+  PROBE_VELOCITY,     /* of a body's point, or of the water at a place [m/s]           */
+  PROBE_PRESSURE,     /* of the water, Shepard-normalised [Pa]                         */
+  PROBE_HEIGHT,       /* of the water above the floor [m]                              */
+  PROBE_FORCE         /* of the fluid on a body, an obstacle or a wall [N]             */
+} ProbeQuantity;
+
+typedef struct {
+  PetscReal end, output_every, checkpoint_every; /* [s]                                */
+  PetscInt  max_steps;                           /* stop after this many steps; 0 = no */
+  char      directory[PETSC_MAX_PATH_LEN];
+} RunParams;
+
+typedef struct {
+  PetscReal min[3], max[3];
+  Names     walls, periodic;
+} DomainParams;
+
+typedef struct {
+  PetscReal gravity[3];
+  Names     bodies, obstacles, probes;
+} TopParams;
+
+typedef struct {
+  PetscReal min[3], max[3], velocity[3];
+  char      surface[PETSC_MAX_PATH_LEN];
+  PetscReal scale, translate[3];
+} FillParams;
+
+typedef struct {
+  char      surface[PETSC_MAX_PATH_LEN];
+  PetscReal scale, translate[3];
+} ObstacleParams;
+
+typedef struct {
+  int       scheme;         /* CouplerScheme                                                          */
+  PetscReal response_beta;  /* stiffness in the interface response (M + beta dt^2 K)^-1 of `mass`     */
+  PetscInt  response_every; /* steps between refreshes of the response's tangent                      */
+  PetscInt  passes;         /* pressure solves a step of `mass`                                       */
+} CouplerParams;
+
+typedef struct {
+  char      body[PETSC_MAX_PATH_LEN]; /* body, obstacle, or wall (xmin ... zmax); empty: the water */
+  PetscReal at[3];
+  int       quantity; /* ProbeQuantity */
+} ProbeParams;
+
+BY_EXTERN const SceneSection CouplerSchema[];
+BY_EXTERN const Key          RunKeys[], DomainKeys[], TopKeys[], FillKeys[], ObstacleKeys[], CouplerKeys[], ProbeKeys[];
+
+/* the program's commands: run a scene into its directory (resume: directory of an earlier run, or NULL), or print the plan */
+BY_EXTERN PetscErrorCode CouplerRun(Scene scene, const char resume[]);
+BY_EXTERN PetscErrorCode CouplerCheck(Scene scene);
+
+/* life: Create -> (AddBody, AddObstacle, SetFluid | SetFromOptions, which builds all of a scene from the options) -> SetUp -> Step -> Destroy.
+   The coupler takes ownership of the objects handed in. */
+BY_EXTERN PetscErrorCode CouplerCreate(MPI_Comm comm, Coupler *coupler);
+BY_EXTERN PetscErrorCode CouplerGetParams(Coupler coupler, CouplerParams **params);
+BY_EXTERN PetscErrorCode CouplerSetFluid(Coupler coupler, SPH sph);
+BY_EXTERN PetscErrorCode CouplerAddBody(Coupler coupler, const char name[], TLED tled, Proxy proxy); /* proxy NULL: dry body */
+BY_EXTERN PetscErrorCode CouplerAddObstacle(Coupler coupler, const char name[], Proxy proxy, PetscInt n_nodes, const PetscReal x[],
+                                            PetscInt n_triangles, const PetscInt triangles[]);
+BY_EXTERN PetscErrorCode CouplerSetFromOptions(Coupler coupler);
+BY_EXTERN PetscErrorCode CouplerSetUp(Coupler coupler);
+BY_EXTERN PetscErrorCode CouplerStep(Coupler coupler, PetscReal dt_max, PetscReal *dt);
+BY_EXTERN PetscErrorCode CouplerView(Coupler coupler, PetscViewer viewer);
+BY_EXTERN PetscErrorCode CouplerDestroy(Coupler *coupler);
+BY_EXTERN PetscErrorCode CouplerGetSPH(Coupler coupler, SPH *sph);                            /* NULL: no fluid */
+BY_EXTERN PetscErrorCode CouplerGetBody(Coupler coupler, PetscInt k, TLED *tled, Proxy *proxy);
+BY_EXTERN PetscErrorCode CouplerGetTime(Coupler coupler, PetscReal *time, PetscInt *step);
+/* force of the fluid on body (or, counting on, obstacle) k during the last step [N] */
+BY_EXTERN PetscErrorCode CouplerGetForce(Coupler coupler, PetscInt k, PetscReal force[3]);
+BY_EXTERN PetscErrorCode CouplerGetBreakdown(Coupler coupler, const char **message);
+
+/* A row of the ledger (method 5.4). */
+typedef struct {
+  PetscReal time, dt;
+  PetscInt  step, iterations, proxies, penetrations, substeps;
+  PetscReal fluid_kinetic, fluid_potential, fluid_viscous_loss;
+  PetscReal solid_kinetic, solid_strain, solid_potential, solid_damping_loss;
+  PetscReal work_fluid, work_solid;            /* at the interface since the start, as each side sees it [J] */
+  PetscReal momentum[3], angular[3];           /* of fluid and bodies                                        */
+  PetscReal compression_mean, compression_max; /* of the fluid                                               */
+  PetscReal speed_max, speed_rms;              /* of the fluid                                               */
+  PetscReal solid_volume;
+} CouplerLedger;
+BY_EXTERN PetscErrorCode CouplerGetLedger(Coupler coupler, CouplerLedger *ledger);
+
+#endif

@@ -1,0 +1,94 @@
+/* coupler_impl.h - struct _p_Coupler; included only in src/coupler. */
+#ifndef BY_COUPLER_IMPL_H
+#define BY_COUPLER_IMPL_H
+
+#include "coupler/coupler.h"
+#include "surface.h"
+#include "checkpoint.h"
+#include <petscksp.h>
+#include <petsc/private/petscimpl.h>
+
+#define COUPLER_MAX_SURFACES (2 * BY_NAMES_MAX)
+
+/* interface response of a body: mean velocity over the step = z solves (M + beta dt^2 K) z = c F, c = dt/2 (1 + 1/n) */
+typedef struct {
+  Mat       tangent, matrix;
+  KSP       ksp;
+  Vec       rhs, solution;
+  PetscReal dt;     /* [s] step for which the matrix was made; 0 = none yet */
+  PetscReal dt_step; /* [s] the current step                                 */
+  PetscReal factor;  /* c [s] of the current step                            */
+  PetscInt  age;     /* steps since the matrix was made                      */
+} CouplerResponse;
+
+typedef struct {
+  char            name[BY_NAME_MAX];
+  TLED            tled;  /* NULL for an obstacle                                                          */
+  Proxy           proxy; /* NULL for a body that no fluid can reach                                       */
+  PetscInt        n_nodes;
+  PetscReal      *x;             /* n x 3 positions of an obstacle; NULL for a body                        */
+  PetscInt       *triangles;     /* of an obstacle                                                         */
+  PetscInt        n_triangles;
+  PetscReal      *force;         /* n x 3 [N] forces of the fluid on the nodes, last step                  */
+  PetscReal      *start;         /* n x 3 [m] displacement at the start of the step                        */
+  PetscReal      *mean_velocity; /* n x 3 [m/s] of the surface over the step                               */
+  PetscReal      *wall_velocity; /* n x 3 [m/s] what the fluid sees, less its response to the new forces   */
+  PetscReal      *answer;        /* n x 3 [m/s] response to the new forces                                 */
+  PetscReal      *proxy_force;   /* per proxy, 3 [N]                                                       */
+  PetscReal      *proxy_work;    /* per proxy, 3: scratch of the response                                  */
+  PetscInt        capacity;      /* proxies allocated                                                      */
+  PetscReal       work_fluid, work_solid; /* [J] since the start                                           */
+  PetscReal       total[3];      /* [N] of the last step                                                   */
+  PetscInt        substeps;      /* of the last step                                                       */
+  PetscReal       n_substeps_sum, n_proxies_sum;
+  CouplerResponse response;
+} CouplerSurface;
+
+typedef struct {
+  char        name[BY_NAME_MAX];
+  ProbeParams params;
+  PetscInt    surface; /* body or obstacle; -1 - wall for a wall; PETSC_MIN_INT for the water */
+  PetscInt    node[4];
+  PetscReal   weight[4];
+} CouplerProbe;
+
+typedef enum { PHASE_NEIGHBOURS, PHASE_PRESSURE, PHASE_PROXIES, PHASE_TRANSFER, PHASE_SOLID, PHASE_OUTPUT, N_PHASES } CouplerPhase;
+
+struct _p_Coupler {
+  PETSCHEADER(int);
+  CouplerParams  params;
+  SPH            sph;
+  PetscInt       n_bodies, n_surfaces; /* bodies first, then obstacles */
+  CouplerSurface surface[COUPLER_MAX_SURFACES];
+  SPHContacts    contacts[COUPLER_MAX_SURFACES];
+  PetscInt       n_probes;
+  CouplerProbe   probe[BY_NAMES_MAX];
+  PetscReal      gravity[3];
+  PetscBool      setup, compliant; /* compliant: scheme `mass` in use             */
+  PetscReal      time, dt, mass;   /* mass of a particle [kg]                      */
+  PetscReal      rest_density;
+  PetscInt       step;
+  PetscReal      iterations_sum;
+  PetscLogDouble phase[N_PHASES], mark; /* [s] wall                                  */
+  char           breakdown[1024];
+};
+
+/* coupler_fill.c */
+PETSC_INTERN PetscErrorCode CouplerBuildFluid(Coupler coupler, const DomainParams *domain);
+/* scheme_mass.c */
+PETSC_INTERN PetscErrorCode CouplerResponseSetUp(Coupler coupler, CouplerSurface *s, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], PetscReal velocity[]);
+PETSC_INTERN PetscErrorCode CouplerResponseApply(void *coupler, PetscInt n, const PetscReal p[], PetscReal Ap[]);
+PETSC_INTERN PetscErrorCode CouplerResponseDestroy(CouplerResponse *response);
+/* coupler.c */
+PETSC_INTERN PetscErrorCode CouplerUpdateContacts(Coupler coupler);
+PETSC_INTERN PetscErrorCode CouplerTimer(Coupler coupler, CouplerPhase phase);
+/* coupler_probes.c */
+PETSC_INTERN PetscErrorCode CouplerAddProbes(Coupler coupler, const Names *names);
+PETSC_INTERN PetscErrorCode CouplerProbeHeaders(Coupler coupler, PetscInt *n, char headers[][2 * BY_NAME_MAX]);
+PETSC_INTERN PetscErrorCode CouplerProbeRow(Coupler coupler, PetscReal row[]);
+/* coupler_state.c */
+PETSC_INTERN PetscErrorCode CouplerSave(Coupler coupler, const char directory[], PetscInt n_outputs, const char scene[]);
+PETSC_INTERN PetscErrorCode CouplerLoad(Coupler coupler, const char directory[], PetscInt *n_outputs);
+
+#endif

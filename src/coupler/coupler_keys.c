@@ -1,0 +1,76 @@
+/* coupler_keys.c - keys of the scene that belong to no single module, and the schema of a whole scene. */
+#include "coupler/coupler.h"
+
+#define HUGE_LENGTH 1e6 /* [m], larger than anything a particle method resolves: catches wrong units */
+#define ROW(S, f)   offsetof(S, f)
+
+static const char *const wall_names[]   = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
+static const char *const axis_names[]   = {"x", "y", "z", NULL};
+static const char *const scheme_names[] = {"auto", "explicit", "mass", NULL};
+static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", NULL};
+
+// clang-format off
+const Key RunKeys[] = {
+  {"end",              KEY_REAL,   ROW(RunParams, end),              "s", NULL, 0, 1e9, KEY_LO_OPEN | KEY_REQUIRED, NULL, "simulated time at which the run ends"},
+  {"output_every",     KEY_REAL,   ROW(RunParams, output_every),     "s", "0",  0, 1e9, 0, NULL, "time between results, 0 = end/50"},
+  {"checkpoint_every", KEY_REAL,   ROW(RunParams, checkpoint_every), "s", "0",  0, 1e9, 0, NULL, "time between checkpoints, 0 = only at the end or when interrupted"},
+  {"max_steps",        KEY_INT,    ROW(RunParams, max_steps),        "1", "0",  0, 2e9, 0, NULL, "stop after this many steps, 0 = no limit"},
+  {"directory",        KEY_STRING, ROW(RunParams, directory),        "",  NULL, 0, 0, KEY_REQUIRED, NULL, "run directory, relative to where the program is started"},
+  KEY_END};
+
+const Key DomainKeys[] = {
+  {"min",      KEY_VEC3,  ROW(DomainParams, min),      "m", NULL, -HUGE_LENGTH, HUGE_LENGTH, KEY_REQUIRED, NULL, "lower corner of the domain"},
+  {"max",      KEY_VEC3,  ROW(DomainParams, max),      "m", NULL, -HUGE_LENGTH, HUGE_LENGTH, KEY_REQUIRED, NULL, "upper corner of the domain"},
+  {"walls",    KEY_NAMES, ROW(DomainParams, walls),    "",  "",   0, 0, 0, wall_names, "sides that are walls"},
+  {"periodic", KEY_NAMES, ROW(DomainParams, periodic), "",  "",   0, 0, 0, axis_names, "directions in which the domain repeats"},
+  KEY_END};
+
+const Key TopKeys[] = {
+  {"gravity",   KEY_VEC3,  ROW(TopParams, gravity),   "m/s^2", "0,0,0", -1e4, 1e4, 0, NULL, "acceleration of gravity"},
+  {"bodies",    KEY_NAMES, ROW(TopParams, bodies),    "",      "", 0, 0, 0, NULL, "elastic bodies, a section each"},
+  {"obstacles", KEY_NAMES, ROW(TopParams, obstacles), "",      "", 0, 0, 0, NULL, "rigid obstacles at rest, a section each"},
+  {"probes",    KEY_NAMES, ROW(TopParams, probes),    "",      "", 0, 0, 0, NULL, "gauges written to probes.csv, a section each"},
+  KEY_END};
+
+const Key FillKeys[] = {
+  {"min",       KEY_VEC3, ROW(FillParams, min),       "m",   "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "lower corner of a box of water"},
+  {"max",       KEY_VEC3, ROW(FillParams, max),       "m",   "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "upper corner of a box of water"},
+  {"velocity",  KEY_VEC3, ROW(FillParams, velocity),  "m/s", "0,0,0", -1e4, 1e4, 0, NULL, "initial velocity"},
+  {"surface",   KEY_FILE, ROW(FillParams, surface),   "",    "", 0, 0, 0, NULL, "closed surface (stl, off, obj, ply, msh) that the water fills instead of a box"},
+  {"scale",     KEY_REAL, ROW(FillParams, scale),     "1",   "1", 0, 1e6, KEY_LO_OPEN, NULL, "factor on the surface's coordinates"},
+  {"translate", KEY_VEC3, ROW(FillParams, translate), "m",   "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "shift of the surface, after scaling"},
+  KEY_END};
+
+const Key ObstacleKeys[] = {
+  {"surface",   KEY_FILE, ROW(ObstacleParams, surface),   "",  NULL, 0, 0, KEY_REQUIRED, NULL, "closed surface: stl, off, obj, ply or msh"},
+  {"scale",     KEY_REAL, ROW(ObstacleParams, scale),     "1", "1", 0, 1e6, KEY_LO_OPEN, NULL, "factor on the surface's coordinates"},
+  {"translate", KEY_VEC3, ROW(ObstacleParams, translate), "m", "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "shift of the surface, after scaling"},
+  KEY_END};
+
+const Key CouplerKeys[] = {
+  {"scheme",         KEY_CHOICE, ROW(CouplerParams, scheme),         "",  "auto", 0, 0, 0, scheme_names, "how fluid and bodies are coupled; auto = mass for bodies that the water's added mass can drive, else explicit"},
+  {"response_beta",  KEY_REAL,   ROW(CouplerParams, response_beta),  "1", "0.1667", 0, 1, 0, NULL, "beta of the interface response (M + beta dt^2 K)^-1 of scheme mass"},
+  {"response_every", KEY_INT,    ROW(CouplerParams, response_every), "1", "10", 1, 1e6, 0, NULL, "steps between refreshes of the tangent in the interface response"},
+  {"passes",         KEY_INT,    ROW(CouplerParams, passes),         "1", "1", 1, 100, 0, NULL, "pressure solves a step of scheme mass, each with the body's true answer to the last"},
+  KEY_END};
+
+const Key ProbeKeys[] = {
+  {"body",     KEY_STRING, ROW(ProbeParams, body),     "",  "", 0, 0, 0, NULL, "body, obstacle or wall (xmin ... zmax) it belongs to; none = the water"},
+  {"at",       KEY_VEC3,   ROW(ProbeParams, at),       "m", "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "place; on a body: place in the undeformed body"},
+  {"quantity", KEY_CHOICE, ROW(ProbeParams, quantity), "",  "displacement", 0, 0, KEY_REQUIRED, quantities, "what is measured"},
+  KEY_END};
+
+const SceneSection CouplerSchema[] = {
+  {"",         TopKeys,      NULL,       NULL,        "top level"},
+  {"run",      RunKeys,      NULL,       NULL,        "the run and its directory"},
+  {"domain",   DomainKeys,   NULL,       NULL,        "box in which everything happens"},
+  {"sph",      SPHKeys,      NULL,       NULL,        "the fluid"},
+  {"fill",     FillKeys,     "sph",      "fill",      "water at the start: a box, or the inside of a surface"},
+  {"body",     TLEDKeys,     NULL,       "bodies",    "an elastic body"},
+  {"proxy",    ProxyKeys,    "body",     NULL,        "surface proxies of a body"},
+  {"obstacle", ObstacleKeys, NULL,       "obstacles", "a rigid obstacle at rest"},
+  {"proxy",    ProxyKeys,    "obstacle", NULL,        "surface proxies of an obstacle"},
+  {"coupler",  CouplerKeys,  NULL,       NULL,        "the staggered loop"},
+  {"probe",    ProbeKeys,    NULL,       "probes",    "a gauge"},
+  {NULL, NULL, NULL, NULL, NULL}};
+// clang-format on

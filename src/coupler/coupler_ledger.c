@@ -1,0 +1,94 @@
+/* coupler_ledger.c - energies, work at the interface, momentum, errors, penetrations (method 5.4). */
+#include "coupler_impl.h"
+
+/* water particles inside a body or obstacle, by winding number of its whole closed boundary */
+static PetscErrorCode CountPenetrations(Coupler c, PetscInt *n_inside)
+{
+  PetscInt         n;
+  const PetscReal *x, *v, *p, *rho;
+  const PetscInt  *id;
+  PetscReal       *winding;
+
+  PetscFunctionBegin;
+  *n_inside = 0;
+  if (!c->sph || !c->n_surfaces) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SPHGetSize(c->sph, &n));
+  PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
+  PetscCall(PetscMalloc1(n, &winding));
+  for (PetscInt k = 0; k < c->n_surfaces; k++) {
+    CouplerSurface  *s           = &c->surface[k];
+    PetscInt         n_triangles = s->n_triangles;
+    const PetscInt  *triangles   = s->triangles;
+    const PetscReal *nodes       = s->x, *velocity;
+
+    if (s->tled) {
+      PetscCall(TLEDGetSurface(s->tled, PETSC_FALSE, &n_triangles, &triangles));
+      PetscCall(TLEDGetPositions(s->tled, &nodes, &velocity));
+    }
+    PetscCall(SurfaceWinding(n, x, nodes, n_triangles, triangles, winding));
+    for (PetscInt i = 0; i < n; i++) *n_inside += winding[i] > 0.5;
+  }
+  PetscCall(PetscFree(winding));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CouplerGetLedger - the books of fluid, bodies and interface at the current time
+
+  Collective
+
+  Input Parameter:
+. coupler - after CouplerSetUp()
+
+  Output Parameter:
+. ledger - energies [J], momentum [kg m/s], angular momentum about the origin [kg m^2/s], relative compressions, counts
+
+.seealso: CouplerStep()
+@*/
+PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
+{
+  PetscFunctionBegin;
+  *l      = (CouplerLedger){0};
+  l->time = c->time;
+  l->dt   = c->dt;
+  l->step = c->step;
+  if (c->sph) {
+    SPHStats f;
+
+    PetscCall(SPHGetStats(c->sph, &f));
+    l->iterations         = f.iterations;
+    l->fluid_kinetic      = f.kinetic;
+    l->fluid_potential    = f.potential;
+    l->fluid_viscous_loss = f.viscous_loss;
+    l->compression_mean   = f.compression_mean;
+    l->compression_max    = f.compression_max;
+    l->speed_max          = f.speed_max;
+    l->speed_rms          = f.speed_rms;
+    for (int i = 0; i < 3; i++) {
+      l->momentum[i] = f.momentum[i];
+      l->angular[i]  = f.angular[i];
+    }
+  }
+  for (PetscInt k = 0; k < c->n_surfaces; k++) {
+    CouplerSurface *s = &c->surface[k];
+    TLEDStats       b;
+
+    l->proxies += c->contacts[k].n_proxies;
+    l->work_fluid += s->work_fluid;
+    l->work_solid += s->work_solid;
+    if (!s->tled) continue;
+    PetscCall(TLEDGetStats(s->tled, &b));
+    l->substeps = PetscMax(l->substeps, s->substeps);
+    l->solid_kinetic += b.kinetic;
+    l->solid_strain += b.strain;
+    l->solid_potential += b.gravity_potential;
+    l->solid_damping_loss += b.damping_loss;
+    l->solid_volume += b.volume;
+    for (int i = 0; i < 3; i++) {
+      l->momentum[i] += b.momentum[i];
+      l->angular[i] += b.angular[i];
+    }
+  }
+  PetscCall(CountPenetrations(c, &l->penetrations));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

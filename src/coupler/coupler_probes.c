@@ -1,0 +1,209 @@
+/* coupler_probes.c - gauges: points of bodies, pressure and velocity of the water, its height, force on bodies, obstacles and walls. */
+#include "coupler_impl.h"
+#include "mat3.h"
+
+#define WATER PETSC_MIN_INT
+
+/* Barycentric place of a point of the undeformed body: the tetrahedron that holds it, else (up to a tenth of the body's size away) the
+   nearest node. */
+static PetscErrorCode LocatePoint(CouplerSurface *s, const char key[], const PetscReal at[3], CouplerProbe *probe)
+{
+  PetscInt         n_nodes, n_tets;
+  const PetscInt  *tets;
+  const PetscReal *X;
+  PetscReal        nearest = PETSC_MAX_REAL, low[3], high[3], size = 0.0;
+
+  PetscFunctionBegin;
+  PetscCall(TLEDGetSize(s->tled, &n_nodes, &n_tets));
+  PetscCall(TLEDGetMesh(s->tled, &tets, &X));
+  for (PetscInt e = 0; e < n_tets; e++) {
+    const PetscInt *n = &tets[4 * e];
+    double          D[9], inverse[9], r[3], w[3];
+
+    for (int a = 0; a < 3; a++) {
+      for (int k = 0; k < 3; k++) D[3 * k + a] = X[3 * n[a + 1] + k] - X[3 * n[0] + k];
+    }
+    if (Invert3(D, inverse) == 0.0) continue;
+    Sub3(at, &X[3 * n[0]], r);
+    Mul3(inverse, r, w);
+    if (w[0] < -1e-9 || w[1] < -1e-9 || w[2] < -1e-9 || w[0] + w[1] + w[2] > 1.0 + 1e-9) continue;
+    for (int a = 0; a < 4; a++) probe->node[a] = n[a];
+    probe->weight[0] = 1.0 - w[0] - w[1] - w[2];
+    for (int a = 0; a < 3; a++) probe->weight[a + 1] = w[a];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (int k = 0; k < 3; k++) {
+    low[k]  = PETSC_MAX_REAL;
+    high[k] = PETSC_MIN_REAL;
+  }
+  for (PetscInt a = 0; a < n_nodes; a++) {
+    double r[3];
+
+    Sub3(at, &X[3 * a], r);
+    for (int k = 0; k < 3; k++) {
+      low[k]  = PetscMin(low[k], X[3 * a + k]);
+      high[k] = PetscMax(high[k], X[3 * a + k]);
+    }
+    if (Norm3(r) >= nearest) continue;
+    nearest = Norm3(r);
+    for (int b = 0; b < 4; b++) {
+      probe->node[b]   = a;
+      probe->weight[b] = b == 0;
+    }
+  }
+  for (int k = 0; k < 3; k++) size = PetscMax(size, high[k] - low[k]);
+  if (nearest > 0.1 * size) {
+    PetscFunctionReturn(InputError(key, "is not in the body %s: its nearest node is %g m away\nthe body spans (%g, %g, %g) to (%g, %g, %g) m", s->name,
+                                   (double)nearest, (double)low[0], (double)low[1], (double)low[2], (double)high[0], (double)high[1], (double)high[2]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FindSurface(Coupler c, const char name[], PetscInt *surface)
+{
+  static const char *const walls[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+  PetscBool                same;
+
+  PetscFunctionBegin;
+  *surface = WATER;
+  for (PetscInt k = 0; k < c->n_surfaces; k++) {
+    PetscCall(PetscStrcmp(c->surface[k].name, name, &same));
+    if (same) *surface = k;
+  }
+  for (PetscInt k = 0; k < 6; k++) {
+    PetscCall(PetscStrcmp(walls[k], name, &same));
+    if (same && *surface == WATER) *surface = -1 - k;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddProbe(Coupler c, const char name[])
+{
+  CouplerProbe *probe = &c->probe[c->n_probes];
+  char          prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
+  ProbeParams  *p = &probe->params;
+  PetscBool     is_body;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(probe->name, name, sizeof(probe->name)));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(KeysSetDefaults(ProbeKeys, p));
+  PetscCall(KeysSetFromOptions(ProbeKeys, prefix, p));
+  PetscCall(FindSurface(c, p->body, &probe->surface));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.body", name));
+  if (p->body[0] && probe->surface == WATER) {
+    PetscFunctionReturn(InputError(key, "is not a body, an obstacle or a wall of this scene\nwalls are xmin xmax ymin ymax zmin zmax"));
+  }
+  is_body = (PetscBool)(probe->surface >= 0 && probe->surface < c->n_bodies);
+  if (p->quantity == PROBE_DISPLACEMENT && !is_body) {
+    PetscFunctionReturn(InputError(key, "must name an elastic body: only those have a displacement"));
+  }
+  if (p->quantity == PROBE_FORCE && probe->surface == WATER) PetscFunctionReturn(InputError(key, "must name what the force acts on: a body, an obstacle or a wall"));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.quantity", name));
+  if (!c->sph && (p->quantity == PROBE_PRESSURE || p->quantity == PROBE_HEIGHT || p->quantity == PROBE_FORCE || (p->quantity == PROBE_VELOCITY && !is_body))) {
+    PetscFunctionReturn(InputError(key, "needs a fluid, and the scene has none"));
+  }
+  if ((p->quantity == PROBE_PRESSURE || p->quantity == PROBE_HEIGHT) && p->body[0]) {
+    PetscFunctionReturn(InputError(key, "is a quantity of the water at a place; leave out `body`"));
+  }
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.at", name));
+  if (is_body && p->quantity != PROBE_FORCE) ByCall(LocatePoint(&c->surface[probe->surface], key, p->at, probe));
+  c->n_probes++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplerAddProbes(Coupler c, const Names *names)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < names->n; k++) {
+    const PetscErrorCode ierr = AddProbe(c, names->name[k]);
+    if (ierr != BY_ERR_INPUT) PetscCall(ierr);
+  }
+  PetscFunctionReturn(InputErrorCount() ? BY_ERR_INPUT : PETSC_SUCCESS);
+}
+
+static PetscBool IsVector(const CouplerProbe *probe)
+{
+  return (PetscBool)(probe->params.quantity != PROBE_PRESSURE && probe->params.quantity != PROBE_HEIGHT);
+}
+
+/* column headers "name [unit]" or "name_x [unit]"; headers has room for 3 columns a probe and the time */
+PetscErrorCode CouplerProbeHeaders(Coupler c, PetscInt *n, char headers[][2 * BY_NAME_MAX])
+{
+  static const char *const units[] = {"m", "m/s", "Pa", "m", "N"};
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(headers[0], "time [s]", 2 * BY_NAME_MAX));
+  *n = 1;
+  for (PetscInt k = 0; k < c->n_probes; k++) {
+    const CouplerProbe *probe = &c->probe[k];
+    const char         *unit  = units[probe->params.quantity];
+
+    for (int i = 0; i < (IsVector(probe) ? 3 : 1); i++) {
+      if (IsVector(probe)) PetscCall(PetscSNPrintf(headers[(*n)++], 2 * BY_NAME_MAX, "%s_%c [%s]", probe->name, "xyz"[i], unit));
+      else PetscCall(PetscSNPrintf(headers[(*n)++], 2 * BY_NAME_MAX, "%s [%s]", probe->name, unit));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BodyPoint(CouplerSurface *s, const CouplerProbe *probe, PetscReal value[3])
+{
+  const PetscReal *x, *v, *X;
+  const PetscInt  *tets;
+
+  PetscFunctionBegin;
+  PetscCall(TLEDGetPositions(s->tled, &x, &v));
+  PetscCall(TLEDGetMesh(s->tled, &tets, &X));
+  for (int k = 0; k < 3; k++) {
+    value[k] = 0.0;
+    for (int a = 0; a < 4; a++) {
+      const PetscInt i = 3 * probe->node[a] + k;
+
+      value[k] += probe->weight[a] * (probe->params.quantity == PROBE_VELOCITY ? v[i] : x[i] - X[i]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal value[3])
+{
+  PetscReal pressure, velocity[3], walls[18];
+  PetscBool wet;
+
+  PetscFunctionBegin;
+  switch (probe->params.quantity) {
+  case PROBE_FORCE:
+    if (probe->surface >= 0) PetscCall(CouplerGetForce(c, probe->surface, value));
+    else {
+      PetscCall(SPHGetWallForces(c->sph, walls));
+      for (int k = 0; k < 3; k++) value[k] = walls[3 * (-1 - probe->surface) + k];
+    }
+    break;
+  case PROBE_HEIGHT:
+    PetscCall(SPHGetHeight(c->sph, probe->params.at, value));
+    break;
+  case PROBE_PRESSURE:
+    PetscCall(SPHInterpolate(c->sph, probe->params.at, value, velocity, &wet));
+    break;
+  default:
+    if (probe->surface >= 0) PetscCall(BodyPoint(&c->surface[probe->surface], probe, value));
+    else PetscCall(SPHInterpolate(c->sph, probe->params.at, &pressure, value, &wet));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplerProbeRow(Coupler c, PetscReal row[])
+{
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  row[n++] = c->time;
+  for (PetscInt k = 0; k < c->n_probes; k++) {
+    PetscReal value[3] = {0, 0, 0};
+
+    PetscCall(ProbeValue(c, &c->probe[k], value));
+    for (int i = 0; i < (IsVector(&c->probe[k]) ? 3 : 1); i++) row[n++] = value[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,189 @@
+/* coupler_scene.c - all objects of a scene from the options database: what the scene does not name is not made. */
+#include "coupler_impl.h"
+
+static PetscBool HasName(const Names *names, const char name[])
+{
+  PetscBool same = PETSC_FALSE;
+
+  for (PetscInt k = 0; k < names->n && !same; k++) (void)PetscStrcmp(names->name[k], name, &same);
+  return same;
+}
+
+static PetscErrorCode ReadDomain(DomainParams *domain, PetscBool *present)
+{
+  PetscFunctionBegin;
+  PetscCall(KeysSetDefaults(DomainKeys, domain));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-domain_min", present));
+  if (!*present) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KeysSetFromOptions(DomainKeys, "domain_", domain));
+  for (int k = 0; k < 3; k++) {
+    static const char axis[] = "xyz";
+    const char        low[] = {axis[k], 'm', 'i', 'n', 0}, high[] = {axis[k], 'm', 'a', 'x', 0}, name[] = {axis[k], 0};
+
+    if (!(domain->max[k] > domain->min[k])) {
+      InputError("domain.max", "is not above domain.min in %s\n%s runs from %g to %g m", name, name, (double)domain->min[k],
+                 (double)domain->max[k]);
+    }
+    if (HasName(&domain->periodic, name) && (HasName(&domain->walls, low) || HasName(&domain->walls, high))) {
+      InputError("domain.periodic", "%s cannot be periodic and have a wall (domain.walls has %s or %s)", name, low, high);
+    }
+  }
+  PetscFunctionReturn(InputErrorCount() ? BY_ERR_INPUT : PETSC_SUCCESS);
+}
+
+static unsigned WallMask(const DomainParams *domain)
+{
+  static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+  unsigned                 mask    = 0;
+
+  for (int k = 0; k < 6; k++) mask |= (unsigned)HasName(&domain->walls, sides[k]) << k;
+  return mask;
+}
+
+static unsigned PeriodicMask(const DomainParams *domain)
+{
+  static const char *const axes[] = {"x", "y", "z"};
+  unsigned                 mask   = 0;
+
+  for (int k = 0; k < 3; k++) mask |= (unsigned)HasName(&domain->periodic, axes[k]) << k;
+  return mask;
+}
+
+/* a body must lie in the domain: not beyond a wall, and not altogether outside an open side */
+static PetscErrorCode CheckInside(const char key[], const DomainParams *domain, PetscReal spacing, PetscInt n, const PetscReal x[])
+{
+  static const char axis[] = "xyz";
+  const unsigned    walls  = WallMask(domain);
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    PetscReal low = PETSC_MAX_REAL, high = PETSC_MIN_REAL;
+
+    for (PetscInt a = 0; a < n; a++) {
+      low  = PetscMin(low, x[3 * a + k]);
+      high = PetscMax(high, x[3 * a + k]);
+    }
+    const PetscReal below = domain->min[k] - low, above = high - domain->max[k], slack = 0.01 * spacing;
+    const PetscBool outside = (PetscBool)(high < domain->min[k] || low > domain->max[k]);
+
+    if (outside || (below > slack && (walls >> (2 * k) & 1)) || (above > slack && (walls >> (2 * k + 1) & 1))) {
+      PetscFunctionReturn(InputError(key, "lies outside the domain: %c from %g to %g m, the domain has %g to %g m\n"
+                                     "move it with `translate` or enlarge the domain", axis[k], (double)low, (double)high,
+                                     (double)domain->min[k], (double)domain->max[k]));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams *domain)
+{
+  TLED             tled;
+  Proxy            proxy = NULL;
+  PetscInt         n_nodes, n_tets, n_triangles;
+  const PetscInt  *tets, *triangles;
+  const PetscReal *X;
+  SPHParams       *fluid;
+  char             prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(TLEDCreate(PETSC_COMM_SELF, name, &tled));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)tled, prefix));
+  PetscCall(TLEDSetFromOptions(tled));
+  PetscCall(TLEDSetGravity(tled, c->gravity));
+  ByCall(TLEDSetUp(tled));
+  PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));
+  PetscCall(TLEDGetMesh(tled, &tets, &X));
+  if (c->sph) {
+    PetscCall(SPHGetParams(c->sph, &fluid));
+    PetscCall(PetscSNPrintf(key, sizeof(key), "%s.mesh", name));
+    ByCall(CheckInside(key, domain, fluid->spacing, n_nodes, X));
+    PetscCall(TLEDGetSurface(tled, PETSC_TRUE, &n_triangles, &triangles));
+    PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_proxy_", name));
+    PetscCall(PetscObjectSetOptionsPrefix((PetscObject)proxy, prefix));
+    PetscCall(ProxySetSurface(proxy, n_nodes, X, n_triangles, triangles));
+    PetscCall(ProxySetFluid(proxy, c->sph));
+    PetscCall(ProxySetFromOptions(proxy));
+    ByCall(ProxySetUp(proxy));
+  }
+  PetscCall(CouplerAddBody(c, name, tled, proxy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainParams *domain)
+{
+  ObstacleParams params;
+  Surface        surface;
+  Proxy          proxy;
+  SPHParams     *fluid;
+  char           prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(KeysSetDefaults(ObstacleKeys, &params));
+  PetscCall(KeysSetFromOptions(ObstacleKeys, prefix, &params));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.surface", name));
+  ByCall(SurfaceRead(key, params.surface, params.scale, params.translate, &surface));
+  PetscCall(SPHGetParams(c->sph, &fluid));
+  ByCall(CheckInside(key, domain, fluid->spacing, surface.n_nodes, surface.x));
+  PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_proxy_", name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)proxy, prefix));
+  PetscCall(ProxySetSurface(proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
+  PetscCall(ProxySetFluid(proxy, c->sph));
+  PetscCall(ProxySetFromOptions(proxy));
+  ByCall(ProxySetUp(proxy));
+  PetscCall(CouplerAddObstacle(c, name, proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
+  PetscCall(SurfaceDestroy(&surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CouplerSetFromOptions - build fluid, bodies, obstacles and probes of the scene in the options database
+
+  Collective
+
+  Input Parameter:
+. coupler - a new coupler
+
+  Errors:
+  BY_ERR_INPUT when the scene cannot be built (mesh, groups, no fluid, a body outside the domain); each is reported
+
+.seealso: SceneRead(), CouplerSetUp()
+@*/
+PetscErrorCode CouplerSetFromOptions(Coupler c)
+{
+  TopParams    top;
+  DomainParams domain;
+  PetscBool    has_domain, has_fluid;
+
+  PetscFunctionBegin;
+  PetscCall(KeysSetFromOptions(CouplerKeys, "coupler_", &c->params));
+  PetscCall(KeysSetDefaults(TopKeys, &top));
+  PetscCall(KeysSetFromOptions(TopKeys, "", &top));
+  PetscCall(PetscArraycpy(c->gravity, top.gravity, 3));
+  ByCall(ReadDomain(&domain, &has_domain));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-sph_spacing", &has_fluid));
+  if (has_fluid && !has_domain) PetscFunctionReturn(InputError("sph.spacing", "a fluid needs a domain\nadd a section `domain: {min: ..., max: ...}`"));
+  if (!has_fluid && top.obstacles.n) PetscFunctionReturn(InputError("obstacles", "obstacles act on a fluid, and the scene has none\nadd a section `sph:`"));
+  if (!has_fluid && !top.bodies.n) PetscFunctionReturn(InputError("bodies", "the scene has neither a fluid (section `sph:`) nor a body (`bodies: [name]`)"));
+  if (has_fluid) {
+    PetscCall(SPHCreate(PETSC_COMM_SELF, &c->sph));
+    PetscCall(SPHSetFromOptions(c->sph));
+    PetscCall(SPHSetDomain(c->sph, domain.min, domain.max, WallMask(&domain), PeriodicMask(&domain)));
+    PetscCall(SPHSetGravity(c->sph, c->gravity));
+  }
+  for (PetscInt k = 0; k < top.bodies.n; k++) {
+    const PetscErrorCode ierr = BuildBody(c, top.bodies.name[k], &domain);
+    if (ierr != BY_ERR_INPUT) PetscCall(ierr); /* go on, so that every bad body is reported */
+  }
+  for (PetscInt k = 0; k < top.obstacles.n; k++) {
+    const PetscErrorCode ierr = BuildObstacle(c, top.obstacles.name[k], &domain);
+    if (ierr != BY_ERR_INPUT) PetscCall(ierr);
+  }
+  if (InputErrorCount()) PetscFunctionReturn(BY_ERR_INPUT);
+  if (has_fluid) ByCall(CouplerBuildFluid(c, &domain));
+  ByCall(CouplerAddProbes(c, &top.probes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,139 @@
+/* coupler_state.c - the whole state of a coupled run into a checkpoint and back. */
+#include "coupler_impl.h"
+
+static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
+{
+  Vec              vec[3];
+  const PetscReal *values;
+  PetscReal        sums[5], time;
+  TLEDStats        stats;
+  const char      *names[] = {"displacement", "velocity"};
+  char             name[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(TLEDGetVectors(s->tled, &vec[0], &vec[1], &vec[2]));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", s->name, names[k]));
+    PetscCall(VecGetArrayRead(vec[k], &values));
+    ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, values));
+    PetscCall(VecRestoreArrayRead(vec[k], &values));
+  }
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/force", s->name));
+  ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, s->force));
+  PetscCall(TLEDGetStats(s->tled, &stats));
+  PetscCall(TLEDGetTime(s->tled, &time));
+  sums[0] = time;
+  sums[1] = s->work_fluid;
+  sums[2] = s->work_solid;
+  sums[3] = s->n_substeps_sum;
+  sums[4] = s->n_proxies_sum;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
+  ByCall(CheckpointWriteReal(file, name, 5, sums));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
+{
+  Vec         vec[3];
+  PetscReal  *values, sums[5];
+  const char *names[] = {"displacement", "velocity"};
+  char        name[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(TLEDGetVectors(s->tled, &vec[0], &vec[1], &vec[2]));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", s->name, names[k]));
+    PetscCall(VecGetArrayWrite(vec[k], &values));
+    ByCall(CheckpointReadReal(file, name, 3 * s->n_nodes, values));
+    PetscCall(VecRestoreArrayWrite(vec[k], &values));
+  }
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/force", s->name));
+  ByCall(CheckpointReadReal(file, name, 3 * s->n_nodes, s->force));
+  PetscCall(VecGetArrayWrite(vec[2], &values));
+  PetscCall(PetscArraycpy(values, s->force, 3 * s->n_nodes));
+  PetscCall(VecRestoreArrayWrite(vec[2], &values));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
+  ByCall(CheckpointReadReal(file, name, 5, sums));
+  PetscCall(TLEDSetTime(s->tled, sums[0]));
+  s->work_fluid     = sums[1];
+  s->work_solid     = sums[2];
+  s->n_substeps_sum = sums[3];
+  s->n_proxies_sum  = sums[4];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* write DIRECTORY/checkpoint.h5: everything a step reads */
+PetscErrorCode CouplerSave(Coupler c, const char directory[], PetscInt n_outputs, const char scene[])
+{
+  Checkpoint file;
+  PetscReal  clock[3];
+  PetscInt   counts[2];
+
+  PetscFunctionBegin;
+  ByCall(CheckpointCreate(directory, &file));
+  clock[0]  = c->time;
+  clock[1]  = c->dt;
+  clock[2]  = c->iterations_sum;
+  counts[0] = c->step;
+  counts[1] = n_outputs;
+  ByCall(CheckpointWriteReal(file, "run/clock", 3, clock));
+  ByCall(CheckpointWriteInt(file, "run/counts", 2, counts));
+  ByCall(CheckpointWriteString(file, "run/scene", scene));
+  if (c->sph) {
+    PetscInt         n;
+    const PetscInt  *id;
+    const PetscReal *x, *v, *p, *rho;
+
+    PetscCall(SPHGetSize(c->sph, &n));
+    PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
+    ByCall(CheckpointWriteInt(file, "fluid/id", n, id));
+    ByCall(CheckpointWriteReal(file, "fluid/position", 3 * n, x));
+    ByCall(CheckpointWriteReal(file, "fluid/velocity", 3 * n, v));
+    ByCall(CheckpointWriteReal(file, "fluid/pressure", n, p));
+  }
+  for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(SaveBody(file, &c->surface[k]));
+  ByCall(CheckpointCommit(&file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadFluid(Coupler c, Checkpoint file)
+{
+  PetscInt  *id, n;
+  PetscReal *x, *v, *p;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointGetSize(file, "fluid/id", &n));
+  if (n < 0) PetscFunctionReturn(InputError("resume", "the checkpoint has no fluid, but the scene has one"));
+  PetscCall(PetscMalloc4(n, &id, 3 * n, &x, 3 * n, &v, n, &p));
+  ByCall(CheckpointReadInt(file, "fluid/id", n, id));
+  ByCall(CheckpointReadReal(file, "fluid/position", 3 * n, x));
+  ByCall(CheckpointReadReal(file, "fluid/velocity", 3 * n, v));
+  ByCall(CheckpointReadReal(file, "fluid/pressure", n, p));
+  PetscCall(SPHSetState(c->sph, n, id, x, v, p));
+  PetscCall(PetscFree4(id, x, v, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplerLoad(Coupler c, const char directory[], PetscInt *n_outputs)
+{
+  Checkpoint file;
+  PetscReal  clock[3];
+  PetscInt   counts[2];
+
+  PetscFunctionBegin;
+  ByCall(CheckpointOpen(directory, &file));
+  ByCall(CheckpointReadReal(file, "run/clock", 3, clock));
+  ByCall(CheckpointReadInt(file, "run/counts", 2, counts));
+  c->time           = clock[0];
+  c->dt             = clock[1];
+  c->iterations_sum = clock[2];
+  c->step           = counts[0];
+  *n_outputs        = counts[1];
+  if (c->sph) {
+    ByCall(LoadFluid(c, file));
+    PetscCall(SPHSetTimeStep(c->sph, c->dt));
+  }
+  for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(LoadBody(file, &c->surface[k]));
+  PetscCall(CheckpointClose(&file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
