@@ -20,9 +20,10 @@ typedef enum { SERIES_POINTS, SERIES_TRIANGLES, SERIES_TETRAHEDRA } SeriesKind;
 /* <directory>/<name>.vtkhdf and .xmf. Attributes (scene text, version, units) are stored once. `append`: go on after a resume, dropping
    steps later than `time`. */
 BY_EXTERN PetscErrorCode SeriesCreate(const char directory[], const char name[], SeriesKind kind, const char scene_text[], PetscBool append, PetscReal time, Series *series);
+BY_EXTERN PetscErrorCode SeriesSetDoublePrecision(Series series, PetscBool flag); /* before the first step */
 /* connectivity, written once; before the first step (not for points) */
 BY_EXTERN PetscErrorCode SeriesSetCells(Series series, PetscInt n_cells, const PetscInt cells[]);
-/* one time: positions n x 3 and point fields (the same names every time); stored single unless `double_precision` at create */
+/* one time: positions n x 3 and point fields (the same names every time); stored single unless SeriesSetDoublePrecision */
 BY_EXTERN PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const PetscReal x[], PetscInt n_fields, const OutputField fields[]);
 BY_EXTERN PetscErrorCode SeriesDestroy(Series *series);
 
