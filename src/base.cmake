@@ -14,3 +14,13 @@ set_source_files_properties(src/output_series.c src/checkpoint.c PROPERTIES COMP
 # messages quote what the user wrote and may cut it short: truncation by snprintf is meant
 set_source_files_properties(src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c PROPERTIES COMPILE_OPTIONS
   "-Wno-format-truncation;-Wno-restrict")
+
+# what the program says about itself; a tree without git has no revision
+execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} describe --always --dirty --exclude=* OUTPUT_VARIABLE BYSSUS_REVISION OUTPUT_STRIP_TRAILING_WHITESPACE
+  ERROR_QUIET RESULT_VARIABLE no_git)
+if(no_git OR NOT BYSSUS_REVISION)
+  set(BYSSUS_REVISION unknown)
+endif()
+set_source_files_properties(src/backend.c PROPERTIES COMPILE_DEFINITIONS
+  "BYSSUS_VERSION=\"${PROJECT_VERSION}\";BYSSUS_REVISION=\"${BYSSUS_REVISION}\"")
+set_source_files_properties(src/main.c PROPERTIES COMPILE_DEFINITIONS "BYSSUS_PLOT_PATH=\"${CMAKE_SOURCE_DIR}/src/plot/plot.py\"")

@@ -41,21 +41,28 @@ static size_t ValueSize(KeyType type)
   return 0;
 }
 
-/* Levenshtein distance of two words without regard to case; words longer than a name count as far apart */
+/* optimal string alignment: insert, delete, change a letter or swap two neighbours, without regard to case; words longer than a
+   name count as far apart */
 PetscInt KeyDistance(const char a[], const char b[])
 {
   const size_t n_a = strlen(a), n_b = strlen(b);
-  PetscInt     row[BY_NAME_MAX + 1];
+  PetscInt     rows[3][BY_NAME_MAX + 1], *above = rows[0], *row = rows[1], *oldest = rows[2];
 
   if (n_a > BY_NAME_MAX || n_b > BY_NAME_MAX) return BY_NAME_MAX;
   for (size_t j = 0; j <= n_b; j++) row[j] = (PetscInt)j;
   for (size_t i = 1; i <= n_a; i++) {
-    PetscInt diagonal = row[0];
-    row[0]            = (PetscInt)i;
+    PetscInt *const next = oldest;
+
+    oldest = above;
+    above  = row;
+    row    = next;
+    row[0] = (PetscInt)i;
     for (size_t j = 1; j <= n_b; j++) {
-      const PetscInt above = row[j], change = tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]);
-      row[j]   = PetscMin(PetscMin(above, row[j - 1]) + 1, diagonal + change);
-      diagonal = above;
+      const int      c_a = tolower((unsigned char)a[i - 1]), c_b = tolower((unsigned char)b[j - 1]);
+      const PetscInt shorter = PetscMin(above[j], row[j - 1]) + 1;
+
+      row[j] = PetscMin(shorter, above[j - 1] + (c_a != c_b));
+      if (i > 1 && j > 1 && c_a == tolower((unsigned char)b[j - 2]) && c_b == tolower((unsigned char)a[i - 2])) row[j] = PetscMin(row[j], oldest[j - 2] + 1);
     }
   }
   return row[n_b];
@@ -185,17 +192,16 @@ static PetscInt FindChoice(const char *const choices[], const char word[])
 
 static PetscBool RefuseChoice(const Key *key, const char word[], char why[], size_t n_why)
 {
-  char what[BY_NAME_MAX + 32];
+  const char *nearest = NULL;
+  char        what[BY_NAME_MAX + 32];
 
   snprintf(what, sizeof what, "is not known");
   if (key->type == KEY_NAMES) snprintf(what, sizeof what, "has the unknown word %.*s", BY_NAME_MAX, word);
   (void)Refuse(key, what, why, n_why);
   for (PetscInt i = 0; key->choices[i]; i++) {
-    if (KeyIsNear(word, key->choices[i])) {
-      Append(why, n_why, "\ndid you mean %s?", key->choices[i]);
-      break;
-    }
+    if (KeyIsNear(word, key->choices[i]) && (!nearest || KeyDistance(word, key->choices[i]) < KeyDistance(word, nearest))) nearest = key->choices[i];
   }
+  if (nearest) Append(why, n_why, "\ndid you mean %s?", nearest);
   return PETSC_FALSE;
 }
 

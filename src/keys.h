@@ -58,7 +58,7 @@ BY_EXTERN PetscErrorCode KeyCheck(const Key *key, const char value[], char why[]
 /* What may be written for a key, as in "a finite number > 0 [Pa s]". */
 BY_EXTERN PetscErrorCode KeyDescribe(const Key *key, char text[], size_t n);
 
-/* Edit distance of two words without regard to case, and whether it is small enough to ask "did you mean". */
+/* Edit distance of two words without regard to case (a swap of neighbours is one edit), and whether it is small enough to ask "did you mean". */
 BY_EXTERN PetscInt  KeyDistance(const char a[], const char b[]);
 BY_EXTERN PetscBool KeyIsNear(const char word[], const char known[]);
 

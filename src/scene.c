@@ -12,6 +12,9 @@
 /* a scene is written by hand: a larger file is something else */
 #define SCENE_BYTES_MAX (1 << 20)
 
+/* line of an error that has none */
+#define WHOLE_FILE (-1)
+
 /* the scene that InputError looks into, and what it has reported: the user's input is one per process */
 static Scene    open_scene   = NULL;
 static PetscInt input_errors = 0;
@@ -72,7 +75,8 @@ static void PrintErrors(Scene scene)
 
   SortErrors(scene);
   for (PetscInt i = 0; i < scene->n_errors; i++) {
-    if (scene->errors[i].line) snprintf(place, sizeof place, "%s:%d", scene->path, scene->errors[i].line);
+    if (scene->errors[i].line == WHOLE_FILE) snprintf(place, sizeof place, "%s", scene->path);
+    else if (scene->errors[i].line) snprintf(place, sizeof place, "%s:%d", scene->path, scene->errors[i].line);
     else snprintf(place, sizeof place, "command line");
     Report(place, scene->errors[i].text);
   }
@@ -81,21 +85,21 @@ static void PrintErrors(Scene scene)
 
 static PetscErrorCode ReadText(Scene scene)
 {
-  FILE  *file = fopen(scene->path, "rb");
-  size_t n    = 0;
+  FILE  *file;
+  size_t n = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(SCENE_BYTES_MAX + 1, &scene->text));
-  errno = 0;
+  file = fopen(scene->path, "rb");
   if (file) n = fread(scene->text, 1, SCENE_BYTES_MAX + 1, file);
   if (!file || ferror(file)) {
-    PetscCall(SceneAddError(scene, 1, "the scene cannot be read: %s", strerror(errno)));
+    PetscCall(SceneAddError(scene, WHOLE_FILE, "the scene cannot be read: %s", strerror(errno)));
     n = 0;
   } else if (n > SCENE_BYTES_MAX) {
-    PetscCall(SceneAddError(scene, 1, "larger than 1 MB: this is not a scene"));
+    PetscCall(SceneAddError(scene, WHOLE_FILE, "larger than 1 MB: this is not a scene"));
     n = 0;
   } else if (memchr(scene->text, 0, n)) {
-    PetscCall(SceneAddError(scene, 1, "has zero bytes: this is not a text"));
+    PetscCall(SceneAddError(scene, WHOLE_FILE, "has zero bytes: this is not a text"));
     n = 0;
   }
   scene->text[n] = 0;

@@ -422,9 +422,13 @@ static PetscErrorCode CheckClashes(Scene scene)
     for (PetscInt a = 0; a < scene->n_blocks; a++) {
       const Block *other = &scene->blocks[a];
       const size_t m     = strlen(other->prefix);
-      PetscBool    clash = (PetscBool)(a != b && !strcasecmp(reduced, other->prefix) && (a < b || strcasecmp(block->prefix, other->prefix)));
+      PetscBool    clash;
 
-      for (const Key *key = block->section->keys; key->name && a != b && !clash && !strncasecmp(block->prefix, other->prefix, m); key++) {
+      /* flap.proxy and fin.proxy clash only when flap and fin do */
+      if (a == b || (block->parent != other->parent && !strcmp(BlockName(block), BlockName(other)))) continue;
+      clash = (PetscBool)(!strcasecmp(reduced, other->prefix) && (a < b || strcasecmp(block->prefix, other->prefix)));
+
+      for (const Key *key = block->section->keys; key->name && !clash && !strncasecmp(block->prefix, other->prefix, m); key++) {
         snprintf(option, sizeof option, "%s%s", block->prefix + m, key->name);
         clash = (PetscBool)(FindKey(other->section->keys, option) != NULL && strlen(block->prefix) > m);
       }
