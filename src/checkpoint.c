@@ -66,7 +66,7 @@ PetscErrorCode CheckpointCreate(const char directory[], Checkpoint *checkpoint)
   }
   if (!(*checkpoint)->active) PetscFunctionReturn(PETSC_SUCCESS);
   NewName(*checkpoint, path);
-  OutputFileOpen(path, OUTPUT_CREATE, PETSC_TRUE, &(*checkpoint)->file);
+  OutputFileOpen(path, OUTPUT_CREATE, 0, PETSC_TRUE, &(*checkpoint)->file);
   OutputFileSetText(&(*checkpoint)->file, "/", "program", "byssus " BY_VERSION);
   OutputFileSetInts(&(*checkpoint)->file, "/", "format", 1, &format);
   if ((*checkpoint)->file.failed) PetscFunctionReturn(CheckpointCommit(checkpoint));
@@ -161,7 +161,7 @@ PetscErrorCode CheckpointOpen(const char directory[], Checkpoint *checkpoint)
 
   PetscFunctionBegin;
   PetscCall(Begin(directory, PETSC_FALSE, checkpoint));
-  OutputFileOpen((*checkpoint)->path, OUTPUT_READ, PETSC_TRUE, &(*checkpoint)->file);
+  OutputFileOpen((*checkpoint)->path, OUTPUT_READ, 0, PETSC_TRUE, &(*checkpoint)->file);
   if ((*checkpoint)->file.failed) reason = (*checkpoint)->file.reason;
   else if (GetAttribute(*checkpoint, "format") < 0) reason = "it is an HDF5 file, but not a checkpoint of this program";
   else if (GetAttribute(*checkpoint, "complete") != 1) reason = "it was not written to the end";
@@ -226,7 +226,7 @@ PetscErrorCode CheckpointReadInt(Checkpoint checkpoint, const char name[], Petsc
 /* n: room in `value`, the terminating zero included */
 PetscErrorCode CheckpointReadString(Checkpoint checkpoint, const char name[], size_t n, char value[])
 {
-  PetscInt length;
+  PetscInt length = 0;
 
   PetscFunctionBegin;
   ByCall(CheckpointGetSize(checkpoint, name, &length));

@@ -1,10 +1,11 @@
 /* output_file.c - one HDF5 file with errors that stick; see output_file.h. */
-#define _GNU_SOURCE /* fallocate */
+#define _GNU_SOURCE /* fallocate, memfd_create */
 #include "output_file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -58,7 +59,31 @@ static int GetDescriptor(OutputFile *file)
   return *(int *)handle;
 }
 
-void OutputFileOpen(const char path[], OutputMode mode, PetscBool checksums, OutputFile *file)
+/* see that `bytes` more fit behind a descriptor */
+static void Reserve(OutputFile *file, int fd, size_t bytes)
+{
+  struct rlimit limit;
+  struct stat   status;
+
+  if (fstat(fd, &status)) return;
+  bytes += bytes / 50 + RESERVE_EXTRA;
+  if (!getrlimit(RLIMIT_FSIZE, &limit) && limit.rlim_cur != RLIM_INFINITY && (rlim_t)status.st_size + bytes > limit.rlim_cur) {
+    OutputFileFail(file, "%s", strerror(EFBIG));
+    return;
+  }
+  // blocks beyond the end of the file; file systems that cannot do it find out while writing
+  if (fallocate(fd, FALLOC_FL_KEEP_SIZE, status.st_size, (off_t)bytes) && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG))
+    OutputFileFail(file, "%s", strerror(errno));
+}
+
+void OutputFileReserve(OutputFile *file, size_t bytes)
+{
+  const int fd = GetDescriptor(file);
+
+  if (!file->failed && fd >= 0) Reserve(file, fd, bytes);
+}
+
+void OutputFileOpen(const char path[], OutputMode mode, size_t bytes, PetscBool checksums, OutputFile *file)
 {
   hid_t access, links;
   int   fd;
@@ -72,13 +97,15 @@ void OutputFileOpen(const char path[], OutputMode mode, PetscBool checksums, Out
   H5Eget_auto2(H5E_DEFAULT, &file->print, &file->print_data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 
-  // the system's reason is clearer than HDF5's
-  fd = open(path, mode == OUTPUT_READ ? O_RDONLY : mode == OUTPUT_CHANGE ? O_RDWR : O_RDWR | O_CREAT, 0666);
+  // the system first: its reasons are clearer than HDF5's, and HDF5 is best not begun with a disk that is full
+  fd = open(path, mode == OUTPUT_READ ? O_RDONLY : mode == OUTPUT_CHANGE ? O_RDWR : O_RDWR | O_CREAT | O_TRUNC, 0666);
   if (fd < 0) {
     OutputFileFail(file, "%s", strerror(errno));
     return;
   }
+  if (mode != OUTPUT_READ) Reserve(file, fd, bytes);
   close(fd);
+  if (file->failed) return;
 
   // no locks: a viewer that has the file open must not stop the run, nor the run the viewer
   access = H5Pcreate(H5P_FILE_ACCESS);
@@ -94,23 +121,6 @@ void OutputFileOpen(const char path[], OutputMode mode, PetscBool checksums, Out
   H5Pclose(access);
 }
 
-void OutputFileReserve(OutputFile *file, size_t bytes)
-{
-  const int     fd = GetDescriptor(file);
-  struct rlimit limit;
-  struct stat   status;
-
-  if (file->failed || fd < 0 || fstat(fd, &status)) return;
-  bytes += bytes / 50 + RESERVE_EXTRA;
-  if (!getrlimit(RLIMIT_FSIZE, &limit) && limit.rlim_cur != RLIM_INFINITY && (rlim_t)status.st_size + bytes > limit.rlim_cur) {
-    OutputFileFail(file, "%s", strerror(EFBIG));
-    return;
-  }
-  // blocks beyond the end of the file; file systems that cannot do it find out while writing
-  if (fallocate(fd, FALLOC_FL_KEEP_SIZE, status.st_size, (off_t)bytes) && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG))
-    OutputFileFail(file, "%s", strerror(errno));
-}
-
 PetscBool OutputFileClose(OutputFile *file, PetscBool sync)
 {
   const H5E_auto2_t print = file->print;
@@ -121,19 +131,19 @@ PetscBool OutputFileClose(OutputFile *file, PetscBool sync)
     if (!file->failed && file->writing && H5Fflush(file->id, H5F_SCOPE_LOCAL) < 0) FailFromHDF5(file, "flush", "");
     if (!file->failed && file->writing && sync && fsync(GetDescriptor(file))) OutputFileFail(file, "%s", strerror(errno));
 
-    // after a failure HDF5 would try again to write what it holds, over a file that is good up to the last step: give it
-    // the null device instead
+    // after a failure HDF5 would try again to write what it holds, over a file that is good up to the last step, and when that
+    // fails too it crashes at exit (1.10.8): let it write into memory that is then given up
     if (file->failed && file->writing) {
-      const int fd = GetDescriptor(file), null = open("/dev/null", O_RDWR | O_CLOEXEC);
+      const int fd = GetDescriptor(file), memory = memfd_create("byssus", MFD_CLOEXEC);
 
-      if (fd >= 0 && null >= 0) dup2(null, fd);
-      if (null >= 0) close(null);
+      if (fd >= 0 && memory >= 0) dup2(memory, fd);
+      if (memory >= 0) close(memory);
     }
     if (H5Fclose(file->id) < 0 && !file->failed) FailFromHDF5(file, "close", "");
     file->id = -1;
-    // give back the blocks that were reserved and not used
-    if (file->writing && !stat(file->path, &status) && truncate(file->path, status.st_size)) OutputFileFail(file, "%s", strerror(errno));
   }
+  // give back the blocks that were reserved and not used
+  if (file->writing && !stat(file->path, &status) && truncate(file->path, status.st_size)) OutputFileFail(file, "%s", strerror(errno));
   H5Eset_auto2(H5E_DEFAULT, print, file->print_data);
   return file->failed ? PETSC_FALSE : PETSC_TRUE;
 }
@@ -255,7 +265,7 @@ static PetscBool PathExists(OutputFile *file, const char name[])
 {
   char part[PETSC_MAX_PATH_LEN];
 
-  for (const char *slash = strchr(name, '/');; slash = strchr(slash + 1, '/')) {
+  for (const char *slash = strchr(name + 1, '/');; slash = strchr(slash + 1, '/')) {
     snprintf(part, sizeof(part), "%.*s", slash ? (int)(slash - name) : (int)strlen(name), name);
     if (H5Lexists(file->id, part, H5P_DEFAULT) <= 0) return PETSC_FALSE;
     if (!slash) return PETSC_TRUE;

@@ -78,8 +78,7 @@ static PetscErrorCode CreateFile(Series series, const char scene_text[])
   const size_t        n_categories = (size_t)CategoryCount(series);
   OutputFile          file;
 
-  OutputFileOpen(series->path, OUTPUT_CREATE, PETSC_FALSE, &file);
-  OutputFileReserve(&file, strlen(scene_text));
+  OutputFileOpen(series->path, OUTPUT_CREATE, strlen(scene_text), PETSC_FALSE, &file);
   OutputFileGroup(&file, "/VTKHDF");
   OutputFileSetInts(&file, "/VTKHDF", "Version", 2, version);
   OutputFileSetText(&file, "/VTKHDF", "Type", layout->type);
@@ -233,7 +232,7 @@ static PetscErrorCode ContinueFile(Series series, PetscReal time)
 
   PetscFunctionBegin;
   // first only look: what cannot be understood is left as it is
-  OutputFileOpen(series->path, OUTPUT_READ, PETSC_FALSE, &file);
+  OutputFileOpen(series->path, OUTPUT_READ, 0, PETSC_FALSE, &file);
   PetscCall(ReadTables(series, &file, time));
   if (!file.failed && H5Literate_by_name(file.id, "/VTKHDF/PointData", H5_INDEX_NAME, H5_ITER_NATIVE, NULL, VisitField, &visit, H5P_DEFAULT) < 0) OutputFileFail(&file, "no fields");
   readable = OutputFileClose(&file, PETSC_FALSE);
@@ -241,8 +240,7 @@ static PetscErrorCode ContinueFile(Series series, PetscReal time)
     series->failed = PETSC_TRUE;
     PetscFunctionReturn(InputError("resume", "the results %s cannot be continued: %s\n  move that file away to begin a new one", series->path, file.reason));
   }
-  OutputFileOpen(series->path, OUTPUT_CHANGE, PETSC_FALSE, &file);
-  OutputFileReserve(&file, 0);
+  OutputFileOpen(series->path, OUTPUT_CHANGE, 0, PETSC_FALSE, &file);
   Shrink(series, &file);
   PetscFunctionReturn(Finish(series, &file));
 }
@@ -457,8 +455,9 @@ static void AddStep(Series series, OutputFile *file, const Step *step)
 }
 
 /* upper bound of what a step adds to the file [bytes] */
-static size_t StepBytes(Series series, PetscInt n, PetscInt n_fields, const OutputField fields[], PetscBool new_part)
+static size_t StepBytes(Series series, PetscInt n, PetscInt n_fields, const OutputField fields[])
 {
+  const PetscBool new_part = !series->n_parts || series->parts[series->n_parts - 1].n_points != n || (series->kind != SERIES_POINTS && !series->cells_checked) ? PETSC_TRUE : PETSC_FALSE;
   const size_t nodes   = (size_t)series_layouts[series->kind].nodes;
   const size_t n_cells = (size_t)(series->kind == SERIES_POINTS ? n : series->n_cells);
   size_t       numbers = 3;
@@ -495,9 +494,8 @@ PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const Pets
   if (series->failed) PetscFunctionReturn(BY_ERR_OUTPUT);
   PetscCheck(series->kind == SERIES_POINTS || series->cells, PETSC_COMM_SELF, PETSC_ERR_ORDER, "SeriesSetCells comes before the first SeriesWrite of %s", series->path);
   PetscCall(Grow((void **)&series->steps, &series->step_capacity, series->n_steps + 1, sizeof(Step)));
-  OutputFileOpen(series->path, OUTPUT_CHANGE, PETSC_FALSE, &file);
+  OutputFileOpen(series->path, OUTPUT_CHANGE, StepBytes(series, n, n_fields, fields), PETSC_FALSE, &file);
   PetscCall(IsLastPart(series, &file, n, &same));
-  OutputFileReserve(&file, StepBytes(series, n, n_fields, fields, same ? PETSC_FALSE : PETSC_TRUE));
   if (series->n_fields == 0) PetscCall(CreateSets(series, &file, n, n_fields, fields));
   PetscCall(CheckFields(series, n_fields, fields));
   CountRows(series, &points, &cells);
