@@ -105,6 +105,10 @@ BY_EXTERN PetscErrorCode SPHGetSupport(SPH sph, PetscReal *h);
 BY_EXTERN PetscErrorCode SPHGetDomain(SPH sph, PetscReal min[3], PetscReal max[3], unsigned *walls, unsigned *periodic);
 /* restart: all particles by id (0..n-1): x, v [n x 3], p [n] (warm start); and the controller's state */
 BY_EXTERN PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const PetscReal x[], const PetscReal v[], const PetscReal p[]);
+/* numbers beside the particles that the next step depends on, so that a restart gives the same bits */
+#define SPH_INTERNALS 11
+BY_EXTERN PetscErrorCode SPHGetInternals(SPH sph, PetscReal state[SPH_INTERNALS]);
+BY_EXTERN PetscErrorCode SPHSetInternals(SPH sph, const PetscReal state[SPH_INTERNALS]);
 
 /* Shepard-normalised value at a point: pressure [Pa] and velocity [m/s]; *inside = PETSC_FALSE where no fluid is within h */
 BY_EXTERN PetscErrorCode SPHInterpolate(SPH sph, const PetscReal at[3], PetscReal *pressure, PetscReal velocity[3], PetscBool *inside);

@@ -1,0 +1,321 @@
+/* sph.c - life of the fluid object: Create, Set..., SetFromOptions, SetUp, View, Destroy, and what is asked of its state. */
+#include <math.h>
+#include <petscviewer.h>
+#include <stdlib.h>
+
+#include "sph_impl.h"
+
+PetscLogEvent       SPH_Neighbors, SPH_Contacts, SPH_Predict, SPH_Pressure, SPH_Apply, SPH_Forces, SPH_Advance;
+static PetscClassId SPH_CLASSID = 0;
+
+static PetscErrorCode Register(void)
+{
+  PetscFunctionBegin;
+  if (SPH_CLASSID) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscClassIdRegister("SPH", &SPH_CLASSID));
+  PetscCall(PetscLogEventRegister("SPHNeighbors", SPH_CLASSID, &SPH_Neighbors));
+  PetscCall(PetscLogEventRegister("SPHContacts", SPH_CLASSID, &SPH_Contacts));
+  PetscCall(PetscLogEventRegister("SPHPredict", SPH_CLASSID, &SPH_Predict));
+  PetscCall(PetscLogEventRegister("SPHPressure", SPH_CLASSID, &SPH_Pressure));
+  PetscCall(PetscLogEventRegister("SPHApply", SPH_CLASSID, &SPH_Apply));
+  PetscCall(PetscLogEventRegister("SPHForces", SPH_CLASSID, &SPH_Forces));
+  PetscCall(PetscLogEventRegister("SPHAdvance", SPH_CLASSID, &SPH_Advance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHCreate - create an incompressible fluid without particles, with the defaults of SPHKeys[]
+
+  Collective
+
+  Input Parameter:
+. comm - communicator (one rank)
+
+  Output Parameter:
+. sph - the fluid
+
+.seealso: SPHGetParams(), SPHSetDomain(), SPHAddParticles(), SPHSetUp(), SPHDestroy()
+@*/
+PetscErrorCode SPHCreate(MPI_Comm comm, SPH *sph)
+{
+  SPH s;
+
+  PetscFunctionBegin;
+  PetscCall(Register());
+  PetscCall(PetscHeaderCreate(s, SPH_CLASSID, "SPH", "incompressible fluid of smoothed particles", "SPH", comm, SPHDestroy, SPHView));
+  PetscCall(KeysSetDefaults(SPHKeys, &s->params));
+  s->converged = PETSC_TRUE;
+  *sph         = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* lends the parameters; what is written before SPHSetUp() is used, later writes have no effect that is promised */
+PetscErrorCode SPHGetParams(SPH sph, SPHParams **params)
+{
+  PetscFunctionBegin;
+  *params = &sph->params;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* overwrite the parameters with the options -sph_* */
+PetscErrorCode SPHSetFromOptions(SPH sph)
+{
+  PetscFunctionBegin;
+  PetscCall(KeysSetFromOptions(SPHKeys, "sph_", &sph->params));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHSetDomain - the box of the flow, which of its sides are walls, and which axes are periodic
+
+  Input Parameters:
++ sph      - the fluid
+. min, max - corners [m]
+. walls    - bit 2k: wall at min of axis k; bit 2k+1: wall at max; other sides are open
+- periodic - bit k: axis k is periodic
+@*/
+PetscErrorCode SPHSetDomain(SPH sph, const PetscReal min[3], const PetscReal max[3], unsigned walls, unsigned periodic)
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    if (!(max[k] > min[k])) PetscFunctionReturn(InputError("domain.max", "must be larger than domain.min along every axis"));
+    if ((periodic >> k & 1) && (walls >> (2 * k) & 3)) PetscFunctionReturn(InputError("domain.periodic", "an axis is periodic or has walls, not both"));
+    sph->min[k] = min[k];
+    sph->max[k] = max[k];
+  }
+  sph->has_domain = PETSC_TRUE;
+  sph->walls      = walls & 63;
+  sph->periodic   = periodic & 7;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHSetGravity(SPH sph, const PetscReal g[3])
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) sph->gravity[k] = g[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHAddParticles - add fluid particles, each of the mass SPHGetMass(); ids continue from those already there
+
+  Input Parameters:
++ sph - the fluid, before SPHSetUp()
+. n   - how many
+. x   - positions [m], n x 3
+- v   - velocities [m/s], n x 3, or NULL for rest
+@*/
+PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const PetscReal v[])
+{
+  const PetscInt old = sph->n, total = sph->n + n;
+
+  PetscFunctionBegin;
+  PetscCheck(!sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "particles are added before SPHSetUp()");
+  if (total > sph->allocated) {
+    sph->allocated = PetscMax(total, sph->allocated + sph->allocated / 2);
+    PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)sph->allocated, &sph->x));
+    PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)sph->allocated, &sph->v));
+  }
+  for (PetscInt i = 0; i < 3 * n; i++) {
+    sph->x[3 * old + i] = x[i];
+    sph->v[3 * old + i] = v ? v[i] : 0.0;
+  }
+  sph->n = total;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sum of dx^3 W over the points of a full cubic lattice of spacing dx around one of them */
+static PetscReal LatticeSum(int kernel, PetscReal dx, PetscReal h)
+{
+  const int n   = (int)ceil(h / dx);
+  PetscReal sum = 0.0;
+
+  for (int k = -n; k <= n; k++)
+    for (int j = -n; j <= n; j++)
+      for (int i = -n; i <= n; i++) sum += SPHKernelW(kernel, dx * sqrt((double)(i * i + j * j + k * k)), h);
+  return sum * dx * dx * dx;
+}
+
+/* s of method 2, by which still water stands where a planar wall is (docs/verification/fluid-slice.md) */
+static PetscReal CalibratedWallFactor(int kernel, PetscReal support)
+{
+  (void)kernel;
+  (void)support;
+  return 1.06;
+}
+
+static PetscErrorCode AllocateState(SPH sph)
+{
+  const PetscInt n = sph->n;
+  SPHLoops      *l = &sph->loops;
+  const size_t   real = (size_t)sph->table->real_size;
+
+  PetscFunctionBegin;
+  // these change places with their copies when particles are sorted
+  PetscCall(PetscCalloc1(n, &sph->p));
+  PetscCall(PetscCalloc1(n, &sph->id));
+  PetscCall(PetscCalloc1(3 * n, &sph->x_alt));
+  PetscCall(PetscCalloc1(3 * n, &sph->v_alt));
+  PetscCall(PetscCalloc1(n, &sph->p_alt));
+  PetscCall(PetscCalloc1(n, &sph->id_alt));
+
+  PetscCall(PetscCalloc6(SPH_CHUNKS(n) * SPH_SUMS, &sph->partial, n, &sph->order, n, &sph->rho, 3 * n, &sph->v_star, 3 * n, &sph->accel, n, &sph->rho_pairs));
+  PetscCall(PetscCalloc6(n, &sph->open, n, &sph->open_surfaces, 3 * n, &sph->G_planes, 3 * n, &sph->G, n, &sph->rate, n, &sph->wall_rate));
+  PetscCall(PetscCalloc6(n, &sph->rhs, n, &sph->diagonal, n, &sph->scale, n, &sph->y, n, &sph->residual, n, &sph->direction));
+  PetscCall(PetscCalloc4(n, &sph->Adirection, n, &sph->p_tilde, n, &sph->response, n, &sph->mode));
+  if (sph->params.viscosity > 0) PetscCall(PetscCalloc1(n, &sph->friction_planes));
+
+  // the neighbour list is allocated when it is first built
+  PetscCall(PetscMalloc3(n, &l->cell, n, &l->start, n, &l->count));
+  PetscCall(PetscMalloc4(real * 3 * n, (char **)&l->near_x, real * n, (char **)&l->pressure, real * 4 * n, (char **)&l->vector, real * 4 * n, (char **)&l->wall));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHSetUp - check the parameters, derive mass, support and wall factor, allocate every array
+
+  Errors:
+  BY_ERR_INPUT for what the user can mend: no particles, a periodic axis shorter than twice the support, a particle outside
+
+.seealso: SPHPack(), SPHUpdateNeighbors()
+@*/
+PetscErrorCode SPHSetUp(SPH sph)
+{
+  const SPHParams *par = &sph->params;
+  const PetscReal  g   = sqrt(PetscSqr(sph->gravity[0]) + PetscSqr(sph->gravity[1]) + PetscSqr(sph->gravity[2]));
+
+  PetscFunctionBegin;
+  if (sph->setup) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!(par->spacing > 0)) PetscFunctionReturn(InputError("sph.spacing", "must be a finite number > 0 [m]"));
+  if (sph->n == 0) PetscFunctionReturn(InputError("sph.fill", "there is no fluid: no particle is in the blocks of fluid"));
+  sph->h = par->support * par->spacing;
+  for (int k = 0; k < 3; k++) {
+    if ((sph->periodic >> k & 1) && sph->max[k] - sph->min[k] < 2.0 * sph->h) {
+      PetscFunctionReturn(InputError("domain.periodic", "a periodic axis must be at least two supports (%g m) long", (double)(2.0 * sph->h)));
+    }
+  }
+  sph->mass        = par->density * par->spacing * par->spacing * par->spacing / LatticeSum(par->kernel, par->spacing, sph->h);
+  sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : CalibratedWallFactor(par->kernel, par->support);
+  sph->relax_time  = par->relax_time;
+  if (sph->relax_time == 0.0 && par->solver == SPH_SOLVER_PCG && g > 0) sph->relax_time = 0.5 * sqrt(sph->h / g);
+
+  sph->table          = par->precision == SPH_PRECISION_DOUBLE ? &SPHLoopsOpenMPDouble : &SPHLoopsOpenMPSingle;
+  sph->loops.n        = (int)sph->n;
+  sph->loops.kernel   = par->kernel;
+  sph->loops.h        = sph->h;
+  sph->loops.mass     = sph->mass;
+  sph->loops.capacity = 0;
+  PetscCall(AllocateState(sph));
+  for (PetscInt i = 0; i < sph->n; i++) {
+    sph->id[i]   = i;
+    sph->rho[i]  = par->density;
+    sph->mode[i] = 1.0 + 0.5 * sin(12.9898 * (double)i); // any start that no symmetry makes orthogonal
+  }
+  ByCall(SPHCheckState_Internal(sph, "at the start"));
+  sph->setup = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* print every parameter with its unit, and what was derived from them */
+PetscErrorCode SPHView(SPH sph, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)sph), &viewer));
+  PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)sph, viewer));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscCall(KeysView(SPHKeys, &sph->params, viewer));
+  if (sph->setup) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "particles: %d of %g kg, support %g m\n", (int)sph->n, (double)sph->mass, (double)sph->h));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "wall factor in use: %g, density relaxation time in use: %g s\n", (double)sph->wall_factor, (double)sph->relax_time));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "loops: %s\n", sph->table->name));
+  }
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHDestroy(SPH *sph)
+{
+  SPH s = *sph;
+
+  PetscFunctionBegin;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  if (--((PetscObject)s)->refct > 0) {
+    *sph = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscFree(s->x));
+  PetscCall(PetscFree(s->v));
+  PetscCall(PetscFree(s->p));
+  PetscCall(PetscFree(s->id));
+  PetscCall(PetscFree(s->x_alt));
+  PetscCall(PetscFree(s->v_alt));
+  PetscCall(PetscFree(s->p_alt));
+  PetscCall(PetscFree(s->id_alt));
+  PetscCall(PetscFree6(s->partial, s->order, s->rho, s->v_star, s->accel, s->rho_pairs));
+  PetscCall(PetscFree6(s->open, s->open_surfaces, s->G_planes, s->G, s->rate, s->wall_rate));
+  PetscCall(PetscFree6(s->rhs, s->diagonal, s->scale, s->y, s->residual, s->direction));
+  PetscCall(PetscFree4(s->Adirection, s->p_tilde, s->response, s->mode));
+  PetscCall(PetscFree(s->friction_planes));
+  PetscCall(PetscFree3(s->loops.cell, s->loops.start, s->loops.count));
+  PetscCall(PetscFree4(s->loops.near_x, s->loops.pressure, s->loops.vector, s->loops.wall));
+  PetscCall(PetscFree(s->loops.grid.start));
+  free(s->loops.neighbour);
+  free(s->loops.gradient);
+  for (PetscInt k = 0; k < s->surfaces_allocated; k++) PetscCall(PetscFree2(s->surfaces[k].union_factor, s->surfaces[k].friction));
+  PetscCall(PetscFree(s->surfaces));
+  PetscCall(PetscHeaderDestroy(sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHGetSize(SPH sph, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = sph->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* lends the state in the current order; any pointer may be NULL */
+PetscErrorCode SPHGetState(SPH sph, const PetscReal *x[], const PetscReal *v[], const PetscReal *p[], const PetscReal *rho[], const PetscInt *id[])
+{
+  PetscFunctionBegin;
+  if (x) *x = sph->x;
+  if (v) *v = sph->v;
+  if (p) *p = sph->p;
+  if (rho) *rho = sph->rho;
+  if (id) *id = sph->id;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHGetMass(SPH sph, PetscReal *particle_mass)
+{
+  PetscFunctionBegin;
+  *particle_mass = sph->mass;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHGetSupport(SPH sph, PetscReal *h)
+{
+  PetscFunctionBegin;
+  *h = sph->setup ? sph->h : sph->params.support * sph->params.spacing;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHGetDomain(SPH sph, PetscReal min[3], PetscReal max[3], unsigned *walls, unsigned *periodic)
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    min[k] = sph->min[k];
+    max[k] = sph->max[k];
+  }
+  *walls    = sph->walls;
+  *periodic = sph->periodic;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* what went wrong when a step returned BY_ERR_BREAKDOWN: step, particle, position, quantity */
+PetscErrorCode SPHGetBreakdown(SPH sph, const char **message)
+{
+  PetscFunctionBegin;
+  *message = sph->breakdown;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

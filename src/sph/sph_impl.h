@@ -1,0 +1,121 @@
+/* sph_impl.h - the struct behind SPH; included only in src/sph. */
+#ifndef BY_SPH_IMPL_H
+#define BY_SPH_IMPL_H
+
+#include <petsc/private/petscimpl.h>
+
+#include "sph.h"
+#include "sph_loops.h"
+#include "sph_pair.h"
+
+#define SPH_CHUNK 1024 /* particles of one partial sum: sums are the same for every number of threads */
+#define SPH_SUMS  8    /* partial sums that one pass over the particles may form */
+
+/* first and one past the last particle of chunk c */
+#define SPH_FIRST(c)   ((c) * SPH_CHUNK)
+#define SPH_LAST(c, n) (((c) + 1) * SPH_CHUNK < (n) ? ((c) + 1) * SPH_CHUNK : (n))
+#define SPH_CHUNKS(n)  (((n) + SPH_CHUNK - 1) / SPH_CHUNK)
+
+/* what friction of walls needs of one touched particle of a surface */
+typedef struct {
+  PetscReal *union_factor; /* c of SPHGetUnionFactors, n_touched [1] */
+  PetscReal *friction;     /* k of SPHWallFriction, n_touched [1/s]  */
+  PetscInt   capacity;     /* elements allocated                     */
+} SPHSurfaceWork;
+
+struct _p_SPH {
+  PETSCHEADER(int);
+  SPHParams params;
+  PetscBool setup;
+
+  /* domain and forces */
+  PetscBool has_domain;
+  PetscReal min[3], max[3];          /* [m]                                              */
+  unsigned  walls, periodic;         /* bits of SPHSetDomain                             */
+  PetscReal gravity[3];              /* [m/s^2]                                          */
+
+  /* derived at SetUp */
+  PetscReal h, mass, wall_factor, relax_time; /* [m], [kg], [1], [s] (0: correct all at once) */
+
+  /* state, sorted by cell then id */
+  PetscInt   n, allocated;
+  PetscReal *x, *v, *p, *rho;        /* n x 3 [m], n x 3 [m/s], n [Pa], n [kg/m^3]       */
+  PetscInt  *id;
+
+  /* of the current step */
+  PetscReal *v_star;                 /* n x 3 [m/s] velocity before pressure             */
+  PetscReal *accel;                  /* n x 3 [m/s^2] scratch of predict and advance     */
+  PetscReal *rho_pairs;              /* n, sum_j m W_ij                                  */
+  PetscReal *open;                   /* n, prod_k (1 - phi_k) over planes, then over all */
+  PetscReal *open_surfaces;          /* n, the product over surfaces alone               */
+  PetscReal *G_planes, *G;           /* n x 3 [kg/m^4], planes alone and the union       */
+  PetscReal *rate;                   /* n, D v* without the walls' own motion [kg/(m^3 s)] */
+  PetscReal *wall_rate;              /* n, sum_b rho0 c share . v_b                      */
+  PetscReal *friction_planes;        /* n, k of the planes [1/s]; viscous flows only     */
+
+  /* pressure solve; y = p~/scale */
+  PetscReal *rhs, *diagonal, *scale, *y, *residual, *direction, *Adirection, *p_tilde, *response;
+  PetscReal *mode;                   /* largest eigenvector of the scaled operator       */
+  PetscReal  norm;                   /* its eigenvalue, renewed rarely                   */
+  PetscReal *partial;                /* SPH_CHUNKS(n) x SPH_SUMS                         */
+
+  /* second copies for sorting */
+  PetscReal *x_alt, *v_alt, *p_alt;
+  PetscInt  *id_alt, *order;
+
+  SPHLoops            loops;
+  const SPHLoopTable *table;
+  PetscInt            grid_allocated;
+  PetscReal           grid_drift;    /* how far particles may have moved since they were sorted [m] */
+
+  PetscInt        n_surfaces, surfaces_allocated;
+  SPHContacts    *contacts;          /* borrowed                                         */
+  SPHSurfaceWork *surfaces;
+
+  /* time step, controller, ledger */
+  PetscInt  step;
+  PetscReal dt_last, accel_max;      /* [s], [m/s^2]                                     */
+  PetscReal body_force[3], control[3]; /* [m/s^2], and its integral part                 */
+  PetscReal viscous_loss;            /* [J]                                              */
+  PetscReal wall_force[18];          /* [N]                                              */
+  PetscInt  iterations;
+  PetscBool converged;
+  char      breakdown[512];
+};
+
+extern PetscLogEvent SPH_Neighbors, SPH_Contacts, SPH_Predict, SPH_Pressure, SPH_Apply, SPH_Forces, SPH_Advance;
+
+/* sph_sums.c: sums over fixed chunks, in order; `partial` is filled by chunk */
+PETSC_INTERN void SPHSumPartials(SPH sph, int n_sums, PetscReal sums[]);
+
+/* sph_walls.c */
+PETSC_INTERN PetscErrorCode SPHFindPlanes_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHWallRate_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
+/* distance [m] of a position from plane k (0..5), positive inside; gradient +-1 along its axis in *sign */
+static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], PetscReal *sign)
+{
+  *sign = k % 2 ? -1.0 : 1.0;
+  return k % 2 ? sph->max[k / 2] - x[k / 2] : x[k / 2] - sph->min[k / 2];
+}
+
+/* sph_viscosity.c */
+PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);
+
+/* sph_pressure.c, sph_mprgp.c: one application of the scaled operator, out = S (dt^2 D D^T + response) S y */
+typedef struct {
+  PetscReal   dt;
+  SPHResponse response;
+  void       *ctx;
+} SPHOperator;
+PETSC_INTERN PetscErrorCode SPHApply_Internal(SPH sph, const SPHOperator *op, const PetscReal y[], PetscReal out[]);
+PETSC_INTERN PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op);
+PETSC_INTERN PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op);
+PETSC_INTERN PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op);
+/* solve for the density alone, dt = 1, starting from nothing, with the walls at rest */
+PETSC_INTERN PetscErrorCode SPHPackSolve_Internal(SPH sph);
+
+/* sph_neighbors.c */
+PETSC_INTERN PetscErrorCode SPHCheckState_Internal(SPH sph, const char when[]);
+
+#endif

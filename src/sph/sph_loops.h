@@ -1,0 +1,52 @@
+/* sph_loops.h - what the pair loops of every backend see: raw pointers and sizes, no PETSc. `real` is float or double, chosen
+   by the table of loops. Results of a loop do not depend on the number of threads. */
+#ifndef BY_SPH_LOOPS_H
+#define BY_SPH_LOOPS_H
+
+#define SPH_PAIR_CHUNK 256 /* particles whose neighbours share one slice of the list: the unit of work of a thread */
+
+/* cells of edge >= h, x fastest; a particle outside is in the nearest border cell */
+typedef struct {
+  double lo[3], cell[3];     /* corner and edge of a cell [m]                            */
+  int    n[3];               /* cells along each axis                                    */
+  int    periodic[3];        /* 1: the first cell follows the last                       */
+  double period[3];          /* extent of a periodic axis [m]; 0 = not periodic          */
+  int   *start;              /* n[0] n[1] n[2] + 1, first particle of each cell          */
+} SPHGrid;
+
+typedef struct {
+  int           n;           /* particles                                                */
+  int           kernel;      /* SPHKernelType                                            */
+  int           capacity;    /* slots per particle, on average over a chunk              */
+  double        h, mass;     /* support [m], mass of a particle [kg]                     */
+  SPHGrid       grid;
+  const double *x;           /* n x 3 positions [m], sorted by cell                      */
+  int          *cell;        /* n, cell of each particle                                 */
+  int          *start;       /* n, first slot of particle i                              */
+  int          *count;       /* n, neighbours of i (without i)                           */
+  int          *neighbour;   /* n_chunks SPH_PAIR_CHUNK capacity                         */
+  void         *gradient;    /* real, 3 per slot: m grad_i W_ij [kg/m^4]                 */
+  void         *near_x;      /* real, 3 x n: positions from the grid's corner, x.. y.. z.. */
+  void         *pressure;    /* real, n: p~                                              */
+  void         *vector;      /* real, 4 per particle: acceleration or velocity           */
+  void         *wall;        /* real, 4 per particle: G_i [kg/m^4]                       */
+} SPHLoops;
+
+/* A table of loops. Every entry must be filled; status 0 is success. */
+typedef struct {
+  const char *name;
+  int         real_size;                                                         /* bytes of real                        */
+  int  (*Pairs)(const SPHLoops *l, double density[]);                            /* lists, gradients, sum_j m W; 1: capacity too small */
+  void (*SetWalls)(const SPHLoops *l, const double G[]);                         /* n x 3 -> wall                        */
+  void (*SetPressure)(const SPHLoops *l, const double p[], const double scale[]); /* p scale -> pressure; scale may be NULL */
+  void (*SetVelocity)(const SPHLoops *l, const double v[]);                      /* n x 3 -> vector                      */
+  void (*Acceleration)(const SPHLoops *l);                                       /* vector = -D^T pressure               */
+  void (*GetVector)(const SPHLoops *l, double a[]);                              /* vector -> n x 3                      */
+  void (*Rate)(const SPHLoops *l, double factor, const double scale[], double rate[]); /* factor scale D vector          */
+  void (*Diagonal)(const SPHLoops *l, double diagonal[]);                        /* of D D^T                             */
+  void (*Viscosity)(const SPHLoops *l, double mu_over_rho2, double a[]);         /* a += viscous acceleration of vector  */
+} SPHLoopTable;
+
+extern const SPHLoopTable SPHLoopsOpenMPSingle, SPHLoopsOpenMPDouble;
+
+#endif

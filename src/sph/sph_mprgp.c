@@ -1,0 +1,297 @@
+/* sph_mprgp.c - conjugate gradients for the bound-constrained pressure, and for a domain full of fluid.
+
+   Minimise 1/2 y A y - b y over y >= 0 (scaled as in sph_pressure.c) by modified proportioning with reduced gradient projections,
+   MPRGP [Dostal & Schoeberl, Comput. Optim. Appl. 30 (2005) 23, algorithm 1]. With the gradient g = A y - b:
+     phi  = g where y > 0                              free gradient
+     beta = min(g, 0) where y = 0                      chopped gradient
+     phi~ = min(y/alpha, phi)                          what a fixed step alpha can use of phi
+   A conjugate gradient step while it stays feasible; when it would leave, the feasible part of it and a projected gradient step of
+   length alpha < 2/|A|; a step along beta when |beta|^2 > phi~ . phi, which frees particles that want pressure. */
+#include <math.h>
+
+#include "sph_impl.h"
+
+typedef struct {
+  PetscReal free, chopped; /* phi~ . phi and beta . beta              */
+  PetscReal residual;      /* sum of |phi + beta| / S [kg/m^3]        */
+  PetscReal count;         /* particles with pressure or wanting it   */
+} Measures;
+
+/* projected gradient in its two parts; alpha is the fixed step */
+static Measures Measure(SPH sph, PetscReal alpha)
+{
+  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  PetscReal sums[4];
+  Measures  m;
+
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+      const PetscReal y = sph->y[i], g = sph->residual[i];
+
+      if (y > 0) {
+        s0 += PetscMin(y / alpha, g) * g;
+        s2 += PetscAbsReal(g) / sph->scale[i];
+        s3 += 1.0;
+      } else if (g < 0) {
+        s1 += g * g;
+        s2 -= g / sph->scale[i];
+        s3 += 1.0;
+      }
+    }
+    s[0] = s0;
+    s[1] = s1;
+    s[2] = s2;
+    s[3] = s3;
+  }
+  SPHSumPartials(sph, 4, sums);
+  m.free     = sums[0];
+  m.chopped  = sums[1];
+  m.residual = sums[2];
+  m.count    = sums[3];
+  return m;
+}
+
+/* direction = phi, or beta when `chopped` */
+static void SetDirection(SPH sph, PetscBool chopped)
+{
+  const int n = (int)sph->n;
+
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    const PetscReal g = sph->residual[i];
+    if (chopped) sph->direction[i] = sph->y[i] > 0 ? 0.0 : PetscMin(g, 0.0);
+    else sph->direction[i] = sph->y[i] > 0 ? g : 0.0;
+  }
+}
+
+/* g = A y - b */
+static PetscErrorCode Gradient(SPH sph, const SPHOperator *op)
+{
+  const int n = (int)sph->n;
+
+  PetscFunctionBegin;
+  PetscCall(SPHApply_Internal(sph, op, sph->y, sph->residual));
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) sph->residual[i] -= sph->rhs[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sums[] = g . d, d . A d, d . d; returns the longest feasible step */
+static PetscReal StepLengths(SPH sph, PetscReal sums[3])
+{
+  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  PetscReal longest = PETSC_MAX_REAL;
+
+#pragma omp parallel for schedule(static) reduction(min : longest)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0, s2 = 0;
+
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+      const PetscReal d = sph->direction[i];
+      s0 += sph->residual[i] * d;
+      s1 += sph->Adirection[i] * d;
+      s2 += d * d;
+      if (d > 0 && sph->y[i] < longest * d) longest = sph->y[i] / d;
+    }
+    s[0] = s0;
+    s[1] = s1;
+    s[2] = s2;
+  }
+  SPHSumPartials(sph, 3, sums);
+  return longest;
+}
+
+/* y -= step d, g -= step A d; `fixed` > 0 goes on by the projected gradient step y = max(0, y - fixed phi) */
+static void Move(SPH sph, PetscReal step, PetscReal fixed)
+{
+  const int n = (int)sph->n;
+
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    PetscReal y = sph->y[i] - step * sph->direction[i];
+
+    if (y < 0) y = 0.0; // round-off at the end of a feasible step
+    sph->residual[i] -= step * sph->Adirection[i];
+    if (fixed > 0 && sph->y[i] > 0) y = PetscMax(0.0, y - fixed * sph->residual[i]);
+    sph->y[i] = y;
+  }
+}
+
+/* d = phi - (phi . A d / d . A d) d, conjugate to the last direction */
+static void Conjugate(SPH sph, PetscReal dAd)
+{
+  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  PetscReal gamma;
+
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal s = 0;
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) s += sph->y[i] > 0 ? sph->residual[i] * sph->Adirection[i] : 0.0;
+    sph->partial[c * SPH_SUMS] = s;
+  }
+  SPHSumPartials(sph, 1, &gamma);
+  gamma /= dAd;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) sph->direction[i] = (sph->y[i] > 0 ? sph->residual[i] : 0.0) - gamma * sph->direction[i];
+}
+
+/* Largest eigenvalue over dt^2 by power iteration from the last mode; it hardly changes, so a few applications now and then do */
+static PetscErrorCode RenewNorm(SPH sph, const SPHOperator *op, int applications)
+{
+  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+
+  PetscFunctionBegin;
+  for (int k = 0; k < applications; k++) {
+    PetscReal sums[2];
+
+    PetscCall(SPHApply_Internal(sph, op, sph->mode, sph->Adirection));
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < chunks; c++) {
+      PetscReal s0 = 0, s1 = 0;
+      for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+        s0 += sph->mode[i] * sph->mode[i];
+        s1 += sph->Adirection[i] * sph->Adirection[i];
+      }
+      sph->partial[c * SPH_SUMS]     = s0;
+      sph->partial[c * SPH_SUMS + 1] = s1;
+    }
+    SPHSumPartials(sph, 2, sums);
+    if (!(sums[0] > 0 && sums[1] > 0)) break;
+    sph->norm              = sqrt(sums[1] / sums[0]) / (op->dt * op->dt);
+    const PetscReal factor = 1.0 / sqrt(sums[1]);
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++) sph->mode[i] = factor * sph->Adirection[i] + 1e-12;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op)
+{
+  const PetscReal dt2 = op->dt * op->dt, tolerance = sph->params.tolerance * sph->params.density;
+  PetscReal       alpha;
+
+  PetscFunctionBegin;
+  if (sph->norm == 0.0) {
+    PetscCall(RenewNorm(sph, op, 12));
+    sph->iterations = 0;
+  }
+  sph->converged = PETSC_FALSE;
+  PetscCall(Gradient(sph, op));
+  SetDirection(sph, PETSC_FALSE);
+  for (;;) {
+    // a power iteration comes from below: a tenth more is safe, 2/|A| is the limit
+    alpha              = 1.7 / (sph->norm * dt2);
+    const Measures m   = Measure(sph, alpha);
+    const PetscBool up = (PetscBool)(m.chopped > m.free);
+    PetscReal      sums[3], longest;
+
+    if (!(m.residual > tolerance * m.count)) {
+      sph->converged = (PetscBool)isfinite(m.residual);
+      break;
+    }
+    if (sph->iterations >= sph->params.max_iterations) break;
+    if (up) SetDirection(sph, PETSC_TRUE);
+    PetscCall(SPHApply_Internal(sph, op, sph->direction, sph->Adirection));
+    longest = StepLengths(sph, sums);
+    if (!(sums[1] > 0)) break; // no curvature: nothing to gain along this direction
+
+    // the quotient of any direction bounds the norm from below
+    sph->norm = PetscMax(sph->norm, sums[1] / sums[2] / dt2);
+    const PetscReal step = sums[0] / sums[1];
+
+    if (up) {
+      Move(sph, step, 0.0);
+      SetDirection(sph, PETSC_FALSE);
+    } else if (step <= longest) {
+      Move(sph, step, 0.0);
+      Conjugate(sph, sums[1]);
+    } else {
+      Move(sph, longest, alpha);
+      PetscCall(Gradient(sph, op));
+      SetDirection(sph, PETSC_FALSE);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* v -= weighted mean of v, so that p~ = S v (`of_pressure`) or b = v/S has mean zero: a closed domain fixes pressure up to a constant */
+static void RemoveMean(SPH sph, PetscReal v[], PetscBool of_pressure)
+{
+  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  PetscReal sums[2];
+
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal s0 = 0, s1 = 0;
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+      if (sph->scale[i] == 0.0) continue;
+      s0 += of_pressure ? v[i] * sph->scale[i] : v[i] / sph->scale[i];
+      s1 += 1.0;
+    }
+    sph->partial[c * SPH_SUMS]     = s0;
+    sph->partial[c * SPH_SUMS + 1] = s1;
+  }
+  SPHSumPartials(sph, 2, sums);
+  if (sums[1] == 0.0) return;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    if (sph->scale[i] == 0.0) continue;
+    v[i] -= of_pressure ? sums[0] / sums[1] / sph->scale[i] : sums[0] / sums[1] * sph->scale[i];
+  }
+}
+
+/* Plain conjugate gradients for a domain full of fluid: pressure of either sign, its mean zero */
+PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op)
+{
+  const int       n         = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal tolerance = sph->params.tolerance * sph->params.density;
+  PetscReal       old       = 0.0;
+
+  PetscFunctionBegin;
+  sph->converged = PETSC_FALSE;
+  RemoveMean(sph, sph->rhs, PETSC_FALSE);
+  RemoveMean(sph, sph->y, PETSC_TRUE);
+  PetscCall(Gradient(sph, op));
+  for (;;) {
+    PetscReal sums[3];
+
+    // g . g and the mean residual
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < chunks; c++) {
+      PetscReal s0 = 0, s1 = 0, s2 = 0;
+      for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+        if (sph->scale[i] == 0.0) continue;
+        s0 += sph->residual[i] * sph->residual[i];
+        s1 += PetscAbsReal(sph->residual[i]) / sph->scale[i];
+        s2 += 1.0;
+      }
+      sph->partial[c * SPH_SUMS]     = s0;
+      sph->partial[c * SPH_SUMS + 1] = s1;
+      sph->partial[c * SPH_SUMS + 2] = s2;
+    }
+    SPHSumPartials(sph, 3, sums);
+    if (!(sums[1] > tolerance * sums[2])) {
+      sph->converged = (PetscBool)isfinite(sums[1]);
+      break;
+    }
+    if (sph->iterations >= sph->params.max_iterations) break;
+    const PetscReal gamma = old > 0 ? sums[0] / old : 0.0;
+    old                   = sums[0];
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++) sph->direction[i] = sph->residual[i] + (gamma > 0 ? gamma * sph->direction[i] : 0.0);
+    PetscCall(SPHApply_Internal(sph, op, sph->direction, sph->Adirection));
+    (void)StepLengths(sph, sums);
+    if (!(sums[1] > 0)) break;
+    const PetscReal step = sums[0] / sums[1];
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++) {
+      sph->y[i] -= step * sph->direction[i];
+      sph->residual[i] -= step * sph->Adirection[i];
+    }
+  }
+  RemoveMean(sph, sph->y, PETSC_TRUE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,35 @@
+/* sph_pair.h - what one particle does to another, and a wall to a particle, for host and device (method 1, 1.1, 2).
+   Units: m [kg], grad W [1/m^4], p~ = p/rho0^2 [m^5/(kg s^2)], G = rho0 grad phi [kg/m^4]. Everything that acts between i and j
+   is a number symmetric in i and j times m grad_i W_ij, which is antisymmetric: momentum is conserved pair by pair. */
+#ifndef BY_SPH_PAIR_H
+#define BY_SPH_PAIR_H
+
+#include "sph_kernel.h"
+
+/* density: rho_i = sum_j m W_ij + rho0 phi_i, the particle itself included [kg/m^3] */
+BY_HD SPH_REAL SPHPairDensity(int kernel, SPH_REAL mass, SPH_REAL r, SPH_REAL h) { return mass * SPHKernelW(kernel, r, h); }
+
+/* gradient over displacement: m grad_i W_ij = SPHPairGradient (x_i - x_j) [kg/m^5] */
+BY_HD SPH_REAL SPHPairGradient(int kernel, SPH_REAL mass, SPH_REAL r, SPH_REAL h) { return mass * SPHKernelF(kernel, r, h); }
+
+/* pressure acceleration: a_i = - sum_j (p~_i + p~_j) m grad W_ij - p~_i G_i [IISPH eq. 3 with p~] */
+BY_HD SPH_REAL SPHPairPressure(SPH_REAL p_i, SPH_REAL p_j) { return p_i + p_j; }
+
+/* density rate: (D v)_i = sum_j (v_i - v_j) . m grad W_ij + v_i . G_i; the transpose of the line above up to its sign */
+BY_HD SPH_REAL SPHPairRate(const SPH_REAL v_i[3], const SPH_REAL v_j[3], const SPH_REAL gradient[3])
+{
+  return (v_i[0] - v_j[0])*gradient[0] + (v_i[1] - v_j[1])*gradient[1] + (v_i[2] - v_j[2])*gradient[2];
+}
+
+/* viscous acceleration: a_i = sum_j 2(d+2) (mu/rho0^2) (v_ij . x_ij)/(r^2 + 0.01 h^2) m grad W_ij, d = 3 [Monaghan 2005 eq. 8.8] */
+BY_HD SPH_REAL SPHPairViscosity(SPH_REAL mu_over_rho2, SPH_REAL v_dot_x, SPH_REAL r2, SPH_REAL h)
+{
+  return (SPH_REAL)10 * mu_over_rho2 * v_dot_x / (r2 + (SPH_REAL)0.01*h*h);
+}
+
+/* friction of a no-slip wall, a_i = k (v_wall - v_i), k = 2 nu |grad phi| / d [1/s]: the integral over the wall's half-space of
+   2 nu (v_i - v) (dW/dr)/r with v continued linearly through its value on the wall, v_i - v(z) = (v_i - v_wall) z/d, because
+   int z (dW/dr)/r dV = -A(d) = lambda'(d). d [m] is kept off zero by the caller. */
+BY_HD SPH_REAL SPHWallFriction(SPH_REAL nu, SPH_REAL slope, SPH_REAL d) { return (SPH_REAL)2 * nu * slope / d; }
+
+#endif

@@ -1,0 +1,175 @@
+/* sph_pressure.c - the pressure that keeps the fluid at rest density (method 1.1): right-hand side, operator, and the paper's
+   relaxed Jacobi; sph_mprgp.c has the conjugate gradients.
+
+   One unknown a particle, p~ = p/rho0^2. With D the density rate of a velocity and a = -D^T p~ the pressure acceleration
+     A = dt^2 D D^T (+ the response of compliant walls, method 5.3)
+     b = min(1, dt/tau) (rho - rho0) + dt (D v* - wall's own motion)
+     p~ >= 0,  A p~ >= b,  equality where p~ > 0
+   A is symmetric and positive semidefinite. Solvers work on y = p~/S, S = diag(D D^T)^(-1/2), which keeps the bound. */
+#include <math.h>
+
+#include "sph_impl.h"
+
+/* out = S (dt^2 D D^T + response) S y */
+PetscErrorCode SPHApply_Internal(SPH sph, const SPHOperator *op, const PetscReal y[], PetscReal out[])
+{
+  const SPHLoopTable *table = sph->table;
+  const int           n     = (int)sph->n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Apply, sph, 0, 0, 0));
+  table->SetPressure(&sph->loops, y, sph->scale);
+  table->Acceleration(&sph->loops);
+  table->Rate(&sph->loops, -op->dt * op->dt, sph->scale, out);
+  if (op->response) {
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++) {
+      sph->p_tilde[i]  = sph->scale[i] * y[i];
+      sph->response[i] = 0.0;
+    }
+    PetscCall(op->response(op->ctx, sph->n, sph->p_tilde, sph->response));
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++) out[i] += sph->scale[i] * sph->response[i];
+  }
+  sph->iterations++;
+  PetscCall(PetscLogEventEnd(SPH_Apply, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S from the diagonal, b scaled, y from the last pressure times `warm` */
+static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
+{
+  const int       n     = (int)sph->n;
+  const PetscReal rho0  = sph->params.density, to_tilde = warm / (rho0 * rho0);
+  const PetscReal relax = sph->relax_time > dt ? dt / sph->relax_time : 1.0;
+  const PetscReal tiny  = 1e-8 * rho0 * rho0 / (sph->h * sph->h); // a diagonal of a full neighbourhood is near rho0^2/h^2
+
+  sph->table->Diagonal(&sph->loops, sph->diagonal);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    // a particle that touches nothing has no pressure
+    const PetscReal S = sph->diagonal[i] > tiny ? 1.0 / sqrt(sph->diagonal[i]) : 0.0;
+    const PetscReal b = relax * (sph->rho[i] - rho0) + dt * (sph->rate[i] - sph->wall_rate[i]);
+
+    sph->scale[i] = S;
+    sph->rhs[i]   = S * b;
+    sph->y[i]     = S > 0 ? to_tilde * sph->p[i] / S : 0.0;
+    if (sph->params.free_surface && sph->y[i] < 0) sph->y[i] = 0.0;
+  }
+}
+
+/* p = rho0^2 S y; not-a-number is a breakdown */
+static PetscErrorCode StorePressure(SPH sph)
+{
+  const int       n    = (int)sph->n;
+  const PetscReal rho0 = sph->params.density, from_tilde = rho0 * rho0;
+  int             bad  = n;
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static) reduction(min : bad)
+  for (int i = 0; i < n; i++) {
+    sph->p[i] = from_tilde * sph->scale[i] * sph->y[i];
+    if (!isfinite(sph->p[i]) && i < bad) bad = i;
+  }
+  if (bad < n) {
+    const PetscReal *x = sph->x + 3 * bad;
+    PetscCall(PetscSNPrintf(sph->breakdown, sizeof(sph->breakdown), "step %d, pressure solve: the pressure of fluid particle %d is not a number: position (%g, %g, %g) m, density %g kg/m^3",
+                            (int)sph->step, (int)sph->id[bad], (double)x[0], (double)x[1], (double)x[2], (double)sph->rho[bad]));
+    PetscFunctionReturn(BY_ERR_BREAKDOWN);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  Relaxed Jacobi of [IISPH sec. 3.2], omega = 1/2: p~ <- max(0, p~ + omega (b - A p~)/a_ii). Stops when the mean compression that
+  would be left, mean max(0, b - A p~)/rho0, is below the tolerance, after at least two iterations.
+*/
+PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op)
+{
+  const int       n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal omega = 0.5, dt2 = op->dt * op->dt;
+  const PetscReal allowed = sph->params.tolerance * sph->params.density * (PetscReal)n;
+
+  PetscFunctionBegin;
+  sph->converged = PETSC_FALSE;
+  while (sph->iterations < sph->params.max_iterations) {
+    PetscReal sum;
+
+    PetscCall(SPHApply_Internal(sph, op, sph->y, sph->Adirection));
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < chunks; c++) {
+      PetscReal left = 0.0;
+
+      for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+        const PetscReal r = sph->rhs[i] - sph->Adirection[i];
+        PetscReal       y = sph->y[i] + omega * r / dt2;
+
+        if (sph->scale[i] > 0 && r > 0) left += r / sph->scale[i];
+        if (sph->params.free_surface && y < 0) y = 0.0;
+        sph->y[i] = y;
+      }
+      sph->partial[c * SPH_SUMS] = left;
+    }
+    SPHSumPartials(sph, 1, &sum);
+    if (sph->iterations >= 2 && sum < allowed) {
+      sph->converged = PETSC_TRUE;
+      break;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHSolvePressure - find the pressure that brings v* to rest density at the end of the step
+
+  Collective, after SPHPredict(); velocities of the contacts are read now, so that a coupler may change them and call again
+
+  Input Parameters:
++ sph      - the fluid
+. dt       - step of SPHPredict() [s]
+. response - term of compliant walls in the operator, or NULL
+- ctx      - its context
+
+  Options Database Keys:
++ -sph_solver (pcg|jacobi)   - solver
+. -sph_tolerance <1e-5>      - pcg: mean |projected residual| / rho0 over particles with pressure; jacobi: mean compression
+- -sph_max_iterations <200>  - operator applications; reaching them is told by SPHStats.converged
+
+  Errors:
+  BY_ERR_BREAKDOWN when a pressure is not a number
+
+  References:
+  Ihmsen et al., IEEE TVCG 20 (2014), doi:10.1109/TVCG.2013.105; Dostal, Optimal Quadratic Programming Algorithms (2009) ch. 5
+
+  Tests: tests/unit/sph/test_pressure.c
+@*/
+PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, void *ctx)
+{
+  const SPHOperator op     = {dt, response, ctx};
+  const PetscBool   jacobi = (PetscBool)(sph->params.solver == SPH_SOLVER_JACOBI);
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Pressure, sph, 0, 0, 0));
+  PetscCall(SPHWallRate_Internal(sph));
+  Prepare(sph, dt, jacobi ? 0.5 : 1.0);
+  sph->iterations = 0;
+  if (jacobi) PetscCall(SPHSolveJacobi_Internal(sph, &op));
+  else if (sph->params.free_surface) PetscCall(SPHSolveMPRGP_Internal(sph, &op));
+  else PetscCall(SPHSolveCG_Internal(sph, &op));
+  ByCall(StorePressure(sph));
+  PetscCall(SPHPlaneForces_Internal(sph));
+  PetscCall(PetscLogEventEnd(SPH_Pressure, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHPackSolve_Internal(SPH sph)
+{
+  const SPHOperator op = {1.0, NULL, NULL};
+
+  PetscFunctionBegin;
+  Prepare(sph, 1.0, 0.0);
+  sph->iterations = 0;
+  PetscCall(SPHSolveMPRGP_Internal(sph, &op));
+  ByCall(StorePressure(sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

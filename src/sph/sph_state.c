@@ -1,0 +1,156 @@
+/* sph_state.c - initial packing and restart. */
+#include <math.h>
+
+#include "sph_impl.h"
+
+/*@
+  SPHSetState - put a saved state in place of the current one
+
+  Input Parameters:
++ sph - the fluid, set up with the same number of particles
+. n   - number of particles
+. id  - their ids, a permutation of 0..n-1
+. x   - positions [m], n x 3
+. v   - velocities [m/s], n x 3
+- p   - pressures [Pa], n, from which the next solve starts
+
+  Errors:
+  BY_ERR_INPUT when the number differs or the ids are no permutation: the file belongs to another scene
+
+.seealso: SPHGetInternals()
+@*/
+PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const PetscReal x[], const PetscReal v[], const PetscReal p[])
+{
+  PetscFunctionBegin;
+  PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
+  if (n != sph->n) PetscFunctionReturn(InputError("resume", "the saved state has %d fluid particles, the scene has %d", (int)n, (int)sph->n));
+  for (PetscInt i = 0; i < n; i++) sph->order[i] = -1;
+  for (PetscInt i = 0; i < n; i++) {
+    if (id[i] < 0 || id[i] >= n || sph->order[id[i]] >= 0) PetscFunctionReturn(InputError("resume", "the saved state is damaged: fluid particle id %d is impossible", (int)id[i]));
+    sph->order[id[i]] = i;
+  }
+  PetscCall(PetscArraycpy(sph->id, id, n));
+  PetscCall(PetscArraycpy(sph->x, x, 3 * n));
+  PetscCall(PetscArraycpy(sph->v, v, 3 * n));
+  PetscCall(PetscArraycpy(sph->p, p, n));
+  ByCall(SPHCheckState_Internal(sph, "in the saved state"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHGetInternals - numbers beside the particles that the next step depends on, for a restart that gives the same bits
+
+  Output Parameter:
+. state - SPH_INTERNALS numbers: step, last dt, largest acceleration, controller (6), viscous loss, norm of the operator
+@*/
+PetscErrorCode SPHGetInternals(SPH sph, PetscReal state[SPH_INTERNALS])
+{
+  PetscFunctionBegin;
+  state[0] = (PetscReal)sph->step;
+  state[1] = sph->dt_last;
+  state[2] = sph->accel_max;
+  for (int k = 0; k < 3; k++) {
+    state[3 + k] = sph->body_force[k];
+    state[6 + k] = sph->control[k];
+  }
+  state[9]  = sph->viscous_loss;
+  state[10] = sph->norm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHSetInternals(SPH sph, const PetscReal state[SPH_INTERNALS])
+{
+  PetscFunctionBegin;
+  sph->step      = (PetscInt)state[0];
+  sph->dt_last   = state[1];
+  sph->accel_max = state[2];
+  for (int k = 0; k < 3; k++) {
+    sph->body_force[k] = state[3 + k];
+    sph->control[k]    = state[6 + k];
+  }
+  sph->viscous_loss = state[9];
+  sph->norm         = state[10];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* mean of max(0, rho - rho0)/rho0 */
+static PetscReal MeanCompression(SPH sph)
+{
+  const int       n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal rho0 = sph->params.density;
+  PetscReal       sum;
+
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal s = 0.0;
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) s += PetscMax(0.0, sph->rho[i] / rho0 - 1.0);
+    sph->partial[c * SPH_SUMS] = s;
+  }
+  SPHSumPartials(sph, 1, &sum);
+  return sum / n;
+}
+
+/* x += the displacement of "pressure" sph->p with dt = 1, at most a tenth of the spacing */
+static void Displace(SPH sph)
+{
+  const int       n = (int)sph->n;
+  const PetscReal limit = 0.1 * sph->params.spacing, to_tilde = 1.0 / PetscSqr(sph->params.density);
+
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) sph->p_tilde[i] = to_tilde * sph->p[i];
+  sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
+  sph->table->Acceleration(&sph->loops);
+  sph->table->GetVector(&sph->loops, sph->accel);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    const PetscReal *a      = sph->accel + 3 * i;
+    const PetscReal  length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]), part = length > limit ? limit / length : 1.0;
+
+    for (int k = 0; k < 3; k++) {
+      PetscReal x = sph->x[3 * i + k] + part * a[k];
+      if (sph->periodic >> k & 1) {
+        const PetscReal period = sph->max[k] - sph->min[k];
+        x -= period * floor((x - sph->min[k]) / period);
+      }
+      sph->x[3 * i + k] = x;
+    }
+  }
+}
+
+/*@
+  SPHPack - push an initial cloud apart until nothing is compressed; velocities, pressures and time are untouched
+
+  Input Parameters:
++ sph        - the fluid, set up
+. tol        - mean compression to reach
+. max_sweeps - at most so many sweeps
+. contacts   - called after each neighbour update; it must call SPHSetContacts() (NULL: no surfaces)
+- ctx        - its context
+
+  Each sweep solves the pressure problem of a unit step at rest, b = rho - rho0, and moves every particle by what that pressure gives, at
+  most a tenth of the spacing. Pressure is never negative, so that particles part and never gather: no volume is lost.
+@*/
+PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCode (*contacts)(void *, SPH), void *ctx)
+{
+  const PetscReal relax = sph->relax_time, tolerance = sph->params.tolerance;
+  const PetscInt  n = sph->n;
+
+  PetscFunctionBegin;
+  PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
+  for (PetscInt sweep = 0; sweep <= max_sweeps; sweep++) {
+    ByCall(SPHUpdateNeighbors(sph));
+    if (contacts) ByCall(contacts(ctx, sph));
+    for (PetscInt i = 0; i < n; i++) {
+      sph->rho[i]  = sph->rho_pairs[i] + sph->params.density * (1.0 - sph->open[i]);
+      sph->rate[i] = sph->wall_rate[i] = 0.0;
+    }
+    if (sweep == max_sweeps || MeanCompression(sph) < tol) break;
+    sph->relax_time       = 0.0;
+    sph->params.tolerance = PetscMax(tolerance, 0.05 * tol);
+    ByCall(SPHPackSolve_Internal(sph));
+    sph->relax_time       = relax;
+    sph->params.tolerance = tolerance;
+    Displace(sph);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

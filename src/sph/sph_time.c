@@ -1,0 +1,167 @@
+/* sph_time.c - the time step, what happens before pressure, and the integrator (method 1.3). */
+#include <math.h>
+
+#include "sph_impl.h"
+
+static PetscReal Norm(const PetscReal a[3]) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+/* largest |v| of the particles and of the walls [m/s] */
+static PetscReal LargestSpeed(SPH sph)
+{
+  const int n       = (int)sph->n;
+  PetscReal largest = 0.0;
+
+#pragma omp parallel for schedule(static) reduction(max : largest)
+  for (int i = 0; i < n; i++) {
+    const PetscReal *v = sph->v + 3 * i;
+    largest            = PetscMax(largest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
+    const PetscReal *v = sph->contacts[s].velocity;
+    for (PetscInt b = 0; v && b < sph->contacts[s].n_proxies; b++) largest = PetscMax(largest, v[3 * b] * v[3 * b] + v[3 * b + 1] * v[3 * b + 1] + v[3 * b + 2] * v[3 * b + 2]);
+  }
+  return sqrt(largest);
+}
+
+/*@
+  SPHGetTimeStep - largest permitted step for the current state
+
+  Equation (method 1.3, after Monaghan 1992):
+  dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.125 h^2/nu, max_time_step ), and at most 1.1 times the last one
+
+  |a|max is that of the last step. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
+
+  Options Database Keys:
++ -sph_cfl <0.4>         - path of a particle in a step over spacing
+. -sph_time_step <0>     - fixed step [s]
+- -sph_max_time_step <0> - upper bound [s]
+@*/
+PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
+{
+  const SPHParams *par = &sph->params;
+  const PetscReal  g = Norm(sph->gravity), nu = par->viscosity / par->density;
+  const PetscReal  speed = PetscMax(LargestSpeed(sph), Norm(par->mean_velocity));
+  PetscReal        step  = 0.05 * sqrt(sph->h / (g > 0 ? g : 1.0));
+
+  PetscFunctionBegin;
+  if (par->time_step > 0) {
+    *dt = par->time_step;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (speed > 0) step = PetscMin(step, par->cfl * par->spacing / speed);
+  if (sph->accel_max > 0) step = PetscMin(step, 0.25 * sqrt(sph->h / sph->accel_max));
+  if (nu > 0) step = PetscMin(step, 0.125 * sph->h * sph->h / nu);
+  if (par->max_time_step > 0) step = PetscMin(step, par->max_time_step);
+  if (sph->dt_last > 0) step = PetscMin(step, 1.1 * sph->dt_last);
+  *dt = step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  Body force that holds the mean velocity U at its target U0: a proportional and an integral part,
+    f = 2 (U0 - U)/T + I,  dI/dt = (U0 - U)/T^2,  T = 5 h/|U0|
+  critically damped for a flow with constant drag: U follows within T without overshoot, and I becomes the drag per mass.
+*/
+static void ControlMeanVelocity(SPH sph, PetscReal dt)
+{
+  const int        n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal *target = sph->params.mean_velocity, T = 5.0 * sph->h / Norm(target);
+  PetscReal        mean[3];
+
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal s[3] = {0, 0, 0};
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++)
+      for (int k = 0; k < 3; k++) s[k] += sph->v[3 * i + k];
+    for (int k = 0; k < 3; k++) sph->partial[c * SPH_SUMS + k] = s[k];
+  }
+  SPHSumPartials(sph, 3, mean);
+  for (int k = 0; k < 3; k++) {
+    if (target[k] == 0.0) continue;
+    const PetscReal lag = target[k] - mean[k] / n;
+    sph->body_force[k]  = 2.0 * lag / PetscMax(T, 2.0 * dt) + sph->control[k];
+    sph->control[k] += dt * lag / (T * T);
+  }
+}
+
+/*@
+  SPHPredict - density, and the velocity v* that gravity, viscosity and the mean-velocity controller give without pressure
+
+  Equation:
+  rho_i = sum_j m W_ij + rho0 phi_i;  v*_i = v_i + dt (g + f + viscous);  rate_i = (D v*)_i
+
+  Call after SPHSetContacts() (or SPHUpdateNeighbors() when there are no surfaces).
+@*/
+PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
+{
+  const int        n    = (int)sph->n;
+  const PetscReal  rho0 = sph->params.density;
+  PetscReal        a[3];
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Predict, sph, 0, 0, 0));
+  if (Norm(sph->params.mean_velocity) > 0) ControlMeanVelocity(sph, dt);
+  for (int k = 0; k < 3; k++) a[k] = sph->gravity[k] + sph->body_force[k];
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    sph->rho[i] = sph->rho_pairs[i] + rho0 * (1.0 - sph->open[i]);
+    for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = sph->v[3 * i + k] + dt * a[k];
+  }
+  if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
+  sph->table->SetVelocity(&sph->loops, sph->v_star);
+  sph->table->Rate(&sph->loops, 1.0, NULL, sph->rate);
+  PetscCall(PetscLogEventEnd(SPH_Predict, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal Wrap(PetscReal x, PetscReal lo, PetscReal hi)
+{
+  if (x >= lo && x < hi) return x;
+  x -= (hi - lo) * floor((x - lo) / (hi - lo));
+  return x < hi ? x : lo;
+}
+
+/*@
+  SPHAdvance - end of the step: v = v* + dt a_p, x += dt v (symplectic Euler), periodic axes wrapped
+
+  Errors:
+  BY_ERR_BREAKDOWN when a particle is not a number or left the domain through a wall
+@*/
+PetscErrorCode SPHAdvance(SPH sph, PetscReal dt)
+{
+  const int       n        = (int)sph->n;
+  const PetscReal to_tilde = 1.0 / (sph->params.density * sph->params.density);
+  PetscReal       accel2 = 0.0, speed2 = 0.0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) sph->p_tilde[i] = to_tilde * sph->p[i];
+  sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
+  sph->table->Acceleration(&sph->loops);
+  sph->table->GetVector(&sph->loops, sph->accel);
+#pragma omp parallel for schedule(static) reduction(max : accel2, speed2)
+  for (int i = 0; i < n; i++) {
+    PetscReal a2 = 0.0, v2 = 0.0;
+
+    for (int k = 0; k < 3; k++) {
+      const PetscReal v = sph->v_star[3 * i + k] + dt * sph->accel[3 * i + k], a = (v - sph->v[3 * i + k]) / dt;
+      PetscReal       x = sph->x[3 * i + k] + dt * v;
+
+      if (sph->periodic >> k & 1) x = Wrap(x, sph->min[k], sph->max[k]);
+      sph->v[3 * i + k] = v;
+      sph->x[3 * i + k] = x;
+      a2 += a * a;
+      v2 += v * v;
+    }
+    accel2 = PetscMax(accel2, a2);
+    speed2 = PetscMax(speed2, v2);
+  }
+  sph->accel_max = sqrt(accel2);
+  sph->grid_drift += dt * sqrt(speed2);
+  sph->dt_last = dt;
+  sph->step++;
+  ByCall(SPHCheckState_Internal(sph, "at its end"));
+  PetscCall(PetscLogEventEnd(SPH_Advance, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

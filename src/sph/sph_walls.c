@@ -1,0 +1,291 @@
+/* sph_walls.c - planes and surfaces reduced to phi and its gradient at every particle (method 2), and the forces on them.
+
+   Union of planes k and surfaces s:  1 - phi_i = prod_k (1 - phi_ik) prod_s (1 - phi_is)
+     grad phi_i = sum_k c_ik grad phi_ik,  c_ik = product of (1 - phi) over all the others
+   so that the pressure solve sees one vector G_i = rho0 grad phi_i, whatever there is around. */
+#include <math.h>
+
+#include "sph_impl.h"
+
+/* phi_k of the planes that particle i touches, and the slope along the axis; returns how many */
+static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal phi[6], PetscReal slope[6], PetscReal distance[6])
+{
+  int n = 0;
+
+  for (int k = 0; k < 6; k++) {
+    PetscReal sign, d;
+
+    if (!(sph->walls >> k & 1)) continue;
+    d = SPHPlaneDistance(sph, k, x, &sign);
+    if (d >= sph->h) continue;
+    plane[n]    = k;
+    phi[n]      = PetscMin(1.0, sph->wall_factor * SPHHalfSpace(sph->params.kernel, d, sph->h));
+    slope[n]    = sign * sph->wall_factor * SPHHalfSpaceSlope(sph->params.kernel, d, sph->h);
+    distance[n] = d;
+    n++;
+  }
+  return n;
+}
+
+/* product of (1 - phi) over the planes other than k */
+static PetscReal OtherPlanes(int n, const PetscReal phi[], int k)
+{
+  PetscReal product = 1.0;
+
+  for (int m = 0; m < n; m++)
+    if (m != k) product *= 1.0 - phi[m];
+  return product;
+}
+
+/* A particle deep in a wall is a particle at distance `least` for friction: the first layer settles at 0.15 to 0.25 dx */
+static PetscReal FrictionDistance(SPH sph, PetscReal d) { return PetscMax(d, 0.1 * sph->params.spacing); }
+
+PetscErrorCode SPHFindPlanes_Internal(SPH sph)
+{
+  const int       n    = (int)sph->n;
+  const PetscReal rho0 = sph->params.density, nu = sph->params.viscosity / rho0;
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    int        plane[6];
+    PetscReal  phi[6], slope[6], d[6], G[3] = {0, 0, 0}, open = 1.0, friction = 0.0;
+    const int  touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
+
+    for (int k = 0; k < touched; k++) {
+      const PetscReal c = OtherPlanes(touched, phi, k);
+      open *= 1.0 - phi[k];
+      G[plane[k] / 2] += rho0 * c * slope[k];
+      friction += SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
+    }
+    sph->open[i]          = open;
+    sph->open_surfaces[i] = 1.0;
+    for (int k = 0; k < 3; k++) sph->G[3 * i + k] = sph->G_planes[3 * i + k] = G[k];
+    sph->wall_rate[i] = 0.0;
+    if (sph->friction_planes) sph->friction_planes[i] = friction;
+  }
+  sph->table->SetWalls(&sph->loops, sph->G);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AllocateSurfaces(SPH sph, PetscInt n, const SPHContacts contacts[])
+{
+  PetscFunctionBegin;
+  if (n > sph->surfaces_allocated) {
+    PetscCall(PetscRealloc(sizeof(SPHSurfaceWork) * (size_t)n, &sph->surfaces));
+    PetscCall(PetscArrayzero(sph->surfaces + sph->surfaces_allocated, n - sph->surfaces_allocated));
+    sph->surfaces_allocated = n;
+  }
+  for (PetscInt s = 0; s < n; s++) {
+    SPHSurfaceWork *w = &sph->surfaces[s];
+    if (contacts[s].n_touched <= w->capacity) continue;
+    w->capacity = contacts[s].n_touched + contacts[s].n_touched / 2;
+    PetscCall(PetscFree2(w->union_factor, w->friction));
+    PetscCall(PetscMalloc2(w->capacity, &w->union_factor, w->capacity, &w->friction));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* friction of touched particle t of a surface, from its distance as lambda tells it */
+static PetscReal SurfaceFriction(SPH sph, const SPHContacts *contacts, PetscInt t, PetscReal union_factor)
+{
+  const PetscReal *grad  = contacts->grad + 3 * t;
+  const PetscReal  slope = union_factor * sqrt(grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2]);
+  const PetscReal  d     = sph->h * SPHHalfSpaceDistance(sph->params.kernel, contacts->phi[t] / sph->wall_factor);
+
+  return SPHWallFriction(sph->params.viscosity / sph->params.density, slope, FrictionDistance(sph, d));
+}
+
+/*@
+  SPHSetContacts - the surfaces that the particles touch at their current positions
+
+  Input Parameters:
++ sph        - the fluid, neighbours current
+. n_surfaces - how many
+- contacts   - one struct a surface, borrowed until the next call or SPHUpdateNeighbors()
+
+.seealso: SPHGetForces(), SPHGetUnionFactors()
+@*/
+PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts[])
+{
+  const PetscReal rho0 = sph->params.density;
+  const int       n    = (int)sph->n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Contacts, sph, 0, 0, 0));
+  if (sph->n_surfaces > 0) PetscCall(SPHFindPlanes_Internal(sph));
+  PetscCall(AllocateSurfaces(sph, n_surfaces, contacts));
+  sph->n_surfaces = n_surfaces;
+  sph->contacts   = contacts;
+
+  // forward: c = planes x the surfaces before; open = product so far
+  for (PetscInt s = 0; s < n_surfaces; s++) {
+    SPHSurfaceWork *w = &sph->surfaces[s];
+#pragma omp parallel for schedule(static)
+    for (PetscInt t = 0; t < contacts[s].n_touched; t++) {
+      const PetscInt i   = contacts[s].particle[t];
+      w->union_factor[t] = sph->open[i];
+      sph->open[i] *= PetscMax(0.0, 1.0 - contacts[s].phi[t]);
+    }
+  }
+
+  // backward: c x the surfaces after
+  for (PetscInt s = n_surfaces - 1; s >= 0; s--) {
+    SPHSurfaceWork *w = &sph->surfaces[s];
+#pragma omp parallel for schedule(static)
+    for (PetscInt t = 0; t < contacts[s].n_touched; t++) {
+      const PetscInt i = contacts[s].particle[t];
+      w->union_factor[t] *= sph->open_surfaces[i];
+      sph->open_surfaces[i] *= PetscMax(0.0, 1.0 - contacts[s].phi[t]);
+      if (sph->params.viscosity > 0) w->friction[t] = SurfaceFriction(sph, &contacts[s], t, w->union_factor[t]);
+    }
+  }
+
+  // G = planes x surfaces' product + sum of the surfaces
+  if (n_surfaces > 0) {
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++)
+      for (int k = 0; k < 3; k++) sph->G[3 * i + k] = sph->open_surfaces[i] * sph->G_planes[3 * i + k];
+    for (PetscInt s = 0; s < n_surfaces; s++) {
+#pragma omp parallel for schedule(static)
+      for (PetscInt t = 0; t < contacts[s].n_touched; t++)
+        for (int k = 0; k < 3; k++) sph->G[3 * contacts[s].particle[t] + k] += rho0 * sph->surfaces[s].union_factor[t] * contacts[s].grad[3 * t + k];
+    }
+    sph->table->SetWalls(&sph->loops, sph->G);
+  }
+  PetscCall(PetscLogEventEnd(SPH_Contacts, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHGetUnionFactors(SPH sph, PetscInt surface, const PetscReal *c[])
+{
+  PetscFunctionBegin;
+  PetscCheck(surface >= 0 && surface < sph->n_surfaces, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "surface %d of %d", (int)surface, (int)sph->n_surfaces);
+  *c = sph->surfaces[surface].union_factor;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* wall_rate_i = sum_b rho0 c share . v_b, the density rate that the walls' own motion takes away */
+PetscErrorCode SPHWallRate_Internal(SPH sph)
+{
+  const PetscReal rho0 = sph->params.density;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
+    const SPHContacts *q = &sph->contacts[s];
+#pragma omp parallel for schedule(static)
+    for (PetscInt t = 0; t < q->n_touched; t++) sph->wall_rate[q->particle[t]] = 0.0;
+  }
+  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
+    const SPHContacts *q = &sph->contacts[s];
+    if (!q->velocity) continue;
+#pragma omp parallel for schedule(static)
+    for (PetscInt t = 0; t < q->n_touched; t++) {
+      PetscReal rate = 0.0;
+      for (PetscInt b = q->start[t]; b < q->start[t + 1]; b++) {
+        const PetscReal *v = q->velocity + 3 * q->proxy[b], *share = q->share + 3 * b;
+        rate += share[0] * v[0] + share[1] * v[1] + share[2] * v[2];
+      }
+      sph->wall_rate[q->particle[t]] += rho0 * sph->surfaces[s].union_factor[t] * rate;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* force of pressure and friction on the six planes from the current positions, pressure and v* */
+PetscErrorCode SPHPlaneForces_Internal(SPH sph)
+{
+  const int       n      = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal rho0   = sph->params.density, nu = sph->params.viscosity / rho0, to_tilde = 1.0 / (rho0 * rho0);
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(sph->wall_force, 18));
+  for (int axis = 0; axis < 3; axis++) {
+    PetscReal sums[6];
+
+    if (!(sph->walls >> (2 * axis) & 3)) continue;
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < chunks; c++) {
+      PetscReal force[6] = {0, 0, 0, 0, 0, 0};
+
+      for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+        int       plane[6];
+        PetscReal phi[6], slope[6], d[6];
+        const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
+
+        for (int k = 0; k < touched; k++) {
+          const PetscReal part = OtherPlanes(touched, phi, k) * sph->open_surfaces[i];
+          PetscReal      *f    = force + 3 * (plane[k] % 2);
+
+          if (plane[k] / 2 != axis) continue;
+          f[axis] += sph->mass * sph->p[i] * to_tilde * rho0 * part * slope[k];
+          if (nu > 0) {
+            const PetscReal friction = sph->mass * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
+            for (int a = 0; a < 3; a++) f[a] += friction * sph->v_star[3 * i + a];
+          }
+        }
+      }
+      for (int k = 0; k < 6; k++) sph->partial[c * SPH_SUMS + k] = force[k];
+    }
+    SPHSumPartials(sph, 6, sums);
+    for (int k = 0; k < 6; k++) sph->wall_force[6 * axis + k] = sums[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* force on proxies of one surface; one thread, because particles share proxies: the touched are few */
+static void SurfaceForces(SPH sph, SPHContacts *q, const SPHSurfaceWork *w)
+{
+  const PetscReal rho0 = sph->params.density, nu = sph->params.viscosity / rho0;
+
+  for (int k = 0; k < 3; k++) q->total[k] = q->moment[k] = 0.0;
+  q->power = 0.0;
+  if (q->force)
+    for (PetscInt b = 0; b < 3 * q->n_proxies; b++) q->force[b] = 0.0;
+  for (PetscInt t = 0; t < q->n_touched; t++) {
+    const PetscInt   i        = q->particle[t];
+    const PetscReal *x        = q->position + 3 * t, *grad = q->grad + 3 * t;
+    const PetscReal  pressure = sph->mass * sph->p[i] / rho0 * w->union_factor[t];
+    const PetscReal  grad2    = grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2];
+    const PetscReal  friction = nu > 0 && grad2 > 0 ? sph->mass * w->friction[t] / grad2 : 0.0;
+    PetscReal        sum[3]   = {0, 0, 0};
+
+    for (PetscInt b = q->start[t]; b < q->start[t + 1]; b++) {
+      const PetscReal *share  = q->share + 3 * b, *v = q->velocity ? q->velocity + 3 * q->proxy[b] : NULL;
+      const PetscReal  weight = friction * (share[0] * grad[0] + share[1] * grad[1] + share[2] * grad[2]);
+
+      for (int k = 0; k < 3; k++) {
+        const PetscReal f = pressure * share[k] + weight * (sph->v_star[3 * i + k] - (v ? v[k] : 0.0));
+        sum[k] += f;
+        if (q->force) q->force[3 * q->proxy[b] + k] += f;
+        if (v) q->power += f * v[k];
+      }
+    }
+    for (int k = 0; k < 3; k++) q->total[k] += sum[k];
+    q->moment[0] += x[1] * sum[2] - x[2] * sum[1];
+    q->moment[1] += x[2] * sum[0] - x[0] * sum[2];
+    q->moment[2] += x[0] * sum[1] - x[1] * sum[0];
+  }
+}
+
+/*@
+  SPHGetForces - write the force of the fluid on every proxy, total, moment and power of every surface
+
+  Call after SPHSolvePressure(); may be called again after another solve. Pressure: + m p~_i rho0 c_ik share. Friction of
+  viscous flows is shared in proportion to share . grad.
+@*/
+PetscErrorCode SPHGetForces(SPH sph)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Forces, sph, 0, 0, 0));
+  for (PetscInt s = 0; s < sph->n_surfaces; s++) SurfaceForces(sph, &sph->contacts[s], &sph->surfaces[s]);
+  PetscCall(PetscLogEventEnd(SPH_Forces, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SPHGetWallForces(SPH sph, PetscReal force[18])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(force, sph->wall_force, 18));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
