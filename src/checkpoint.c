@@ -1,12 +1,13 @@
 /* checkpoint.c - the full state in one HDF5 file of checksummed arrays; see checkpoint.h.
 
    Writing goes to checkpoint.h5.new, which is synced and renamed by CheckpointCommit(): at any moment checkpoint.h5 is a whole file.
-   The attribute `complete` is written last. HDF5 1.8's format guards its own tables by checksums and arrays carry Fletcher-32 sums,
-   so that a damaged file is told from a good one. */
+   The attribute `complete` is written last. HDF5 1.8's format guards its own tables by checksums, and every array carries one of its
+   bytes, so that a damaged file is told from a good one. */
 #include "checkpoint.h"
 #include "output_file.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <stdint.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -73,15 +74,27 @@ PetscErrorCode CheckpointCreate(const char directory[], Checkpoint *checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FNV-1a, 64 bit, over the bytes of an array as they are in memory; its lower 63 bits, as -1 means that there is none */
+static PetscInt64 Checksum(const void *values, size_t n)
+{
+  const unsigned char *byte = (const unsigned char *)values;
+  uint64_t             sum  = 14695981039346656037u;
+
+  for (size_t i = 0; i < n; i++) sum = (sum ^ byte[i]) * 1099511628211u;
+  return (PetscInt64)(sum >> 1);
+}
+
 /* one array; errors wait for the commit */
 static PetscErrorCode WriteArray(Checkpoint checkpoint, const char name[], hid_t type, hid_t memory_type, size_t element, size_t n, const void *values)
 {
+  const PetscInt64 sum = Checksum(values, n * element);
+
   PetscFunctionBegin;
   if (!checkpoint->active) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(checkpoint->writing, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "%s is open to be read", checkpoint->path);
-  OutputFileReserve(&checkpoint->file, n * element);
-  OutputFileCreateSet(&checkpoint->file, name, type, 1, n, PETSC_FALSE, PETSC_TRUE);
-  OutputFileAppend(&checkpoint->file, name, memory_type, n, values);
+  OutputFileReserve(&checkpoint->file, n * 8);
+  OutputFileWriteArray(&checkpoint->file, name, type, memory_type, n, values);
+  OutputFileSetInts(&checkpoint->file, name, "sum", 1, &sum);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,7 +105,7 @@ PetscErrorCode CheckpointWriteReal(Checkpoint checkpoint, const char name[], Pet
 
 PetscErrorCode CheckpointWriteInt(Checkpoint checkpoint, const char name[], PetscInt n, const PetscInt values[])
 {
-  return WriteArray(checkpoint, name, H5T_STD_I64LE, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, 8, (size_t)n, values);
+  return WriteArray(checkpoint, name, H5T_STD_I64LE, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, sizeof(PetscInt), (size_t)n, values);
 }
 
 PetscErrorCode CheckpointWriteString(Checkpoint checkpoint, const char name[], const char value[])
@@ -132,19 +145,6 @@ PetscErrorCode CheckpointCommit(Checkpoint *checkpoint)
   PetscFunctionReturn(status);
 }
 
-/* an integer attribute of the file, -1 when it is not there */
-static PetscInt64 GetAttribute(Checkpoint checkpoint, const char name[])
-{
-  PetscInt64 value = -1;
-  hid_t      a;
-
-  if (H5Aexists(checkpoint->file.id, name) <= 0) return -1;
-  a = H5Aopen(checkpoint->file.id, name, H5P_DEFAULT);
-  if (a < 0 || H5Aget_storage_size(a) != sizeof(value) || H5Aread(a, H5T_NATIVE_INT64, &value) < 0) value = -1;
-  if (a >= 0) H5Aclose(a);
-  return value;
-}
-
 /*@
   CheckpointOpen - open the checkpoint of a run directory to read it
 
@@ -160,13 +160,17 @@ PetscErrorCode CheckpointOpen(const char directory[], Checkpoint *checkpoint)
   PetscErrorCode status;
 
   PetscFunctionBegin;
-  PetscCall(Begin(directory, PETSC_FALSE, checkpoint));
+  status = Begin(directory, PETSC_FALSE, checkpoint);
+  if (status) {
+    PetscCall(PetscFree(*checkpoint));
+    PetscFunctionReturn(status);
+  }
   OutputFileOpen((*checkpoint)->path, OUTPUT_READ, 0, PETSC_TRUE, &(*checkpoint)->file);
   if ((*checkpoint)->file.failed) reason = (*checkpoint)->file.reason;
-  else if (GetAttribute(*checkpoint, "format") < 0) reason = "it is an HDF5 file, but not a checkpoint of this program";
-  else if (GetAttribute(*checkpoint, "complete") != 1) reason = "it was not written to the end";
-  else if (GetAttribute(*checkpoint, "format") != FORMAT) {
-    snprintf(text, sizeof(text), "its format is %lld, this program reads %d", (long long)GetAttribute(*checkpoint, "format"), FORMAT);
+  else if (OutputFileGetInt(&(*checkpoint)->file, "/", "format") < 0) reason = "it is an HDF5 file, but not a checkpoint of this program";
+  else if (OutputFileGetInt(&(*checkpoint)->file, "/", "complete") != 1) reason = "it was not written to the end";
+  else if (OutputFileGetInt(&(*checkpoint)->file, "/", "format") != FORMAT) {
+    snprintf(text, sizeof(text), "its format is %lld, this program reads %d", (long long)OutputFileGetInt(&(*checkpoint)->file, "/", "format"), FORMAT);
     reason = text;
   }
   if (!reason) PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,7 +191,7 @@ PetscErrorCode CheckpointGetSize(Checkpoint checkpoint, const char name[], Petsc
 }
 
 /* one array of exactly n values of the kind asked for */
-static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_class_t kind, hid_t type, PetscInt n, void *values)
+static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_class_t kind, hid_t type, size_t element, PetscInt n, void *values)
 {
   H5T_class_t found = H5T_NO_CLASS;
   PetscInt64  rows, columns;
@@ -200,7 +204,10 @@ static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_cl
     if (rows < 0) snprintf(text, sizeof(text), "it has no %s", name);
     else if (found != kind || columns != 1) snprintf(text, sizeof(text), "%s holds %s where %s are expected", name, found == H5T_INTEGER ? "integers" : found == H5T_FLOAT ? "real numbers" : "something else", kind == H5T_INTEGER ? "integers" : "real numbers");
     else if (rows != n) snprintf(text, sizeof(text), "%s has %lld values where the scene needs %" PetscInt_FMT, name, (long long)rows, n);
-    else OutputFileRead(&checkpoint->file, name, type, 0, (size_t)n, values);
+    else {
+      OutputFileRead(&checkpoint->file, name, type, 0, (size_t)n, values);
+      if (!checkpoint->file.failed && OutputFileGetInt(&checkpoint->file, name, "sum") != Checksum(values, (size_t)n * element)) snprintf(text, sizeof(text), "%s is damaged", name);
+    }
   }
   if (checkpoint->file.failed) snprintf(text, sizeof(text), "%s", checkpoint->file.reason);
   if (text[0]) PetscFunctionReturn(ReportUnreadable(checkpoint, text));
@@ -215,12 +222,12 @@ static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_cl
 @*/
 PetscErrorCode CheckpointReadReal(Checkpoint checkpoint, const char name[], PetscInt n, PetscReal values[])
 {
-  return ReadArray(checkpoint, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, n, values);
+  return ReadArray(checkpoint, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, sizeof(PetscReal), n, values);
 }
 
 PetscErrorCode CheckpointReadInt(Checkpoint checkpoint, const char name[], PetscInt n, PetscInt values[])
 {
-  return ReadArray(checkpoint, name, H5T_INTEGER, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, n, values);
+  return ReadArray(checkpoint, name, H5T_INTEGER, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, sizeof(PetscInt), n, values);
 }
 
 /* n: room in `value`, the terminating zero included */
@@ -231,7 +238,7 @@ PetscErrorCode CheckpointReadString(Checkpoint checkpoint, const char name[], si
   PetscFunctionBegin;
   ByCall(CheckpointGetSize(checkpoint, name, &length));
   if (length >= (PetscInt)n) PetscFunctionReturn(ReportUnreadable(checkpoint, "a text in it is too long"));
-  ByCall(ReadArray(checkpoint, name, H5T_INTEGER, H5T_NATIVE_UCHAR, PetscMax(length, 0), value));
+  ByCall(ReadArray(checkpoint, name, H5T_INTEGER, H5T_NATIVE_UCHAR, 1, PetscMax(length, 0), value));
   value[length] = '\0';
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -157,7 +157,7 @@ void OutputFileGroup(OutputFile *file, const char name[])
   if (group < 0 || H5Gclose(group) < 0) FailFromHDF5(file, "group", name);
 }
 
-void OutputFileCreateSet(OutputFile *file, const char name[], hid_t type, size_t columns, size_t rows, PetscBool compress, PetscBool checksums)
+void OutputFileCreateSet(OutputFile *file, const char name[], hid_t type, size_t columns, size_t rows, PetscBool compress)
 {
   const size_t  n_chunks = (rows + OUTPUT_CHUNK_MAX - 1) / OUTPUT_CHUNK_MAX; // of about equal size, so that chunks end where steps do
   const hsize_t none[2] = {0, columns}, most[2] = {H5S_UNLIMITED, columns};
@@ -175,11 +175,25 @@ void OutputFileCreateSet(OutputFile *file, const char name[], hid_t type, size_t
     H5Pset_shuffle(create);
     H5Pset_deflate(create, 1);
   }
-  if (checksums) H5Pset_fletcher32(create);
   set = H5Dcreate2(file->id, name, type, space, links, create, H5P_DEFAULT);
   if (set < 0 || H5Dclose(set) < 0) FailFromHDF5(file, "data set", name);
   H5Pclose(links);
   H5Pclose(create);
+  H5Sclose(space);
+}
+
+void OutputFileWriteArray(OutputFile *file, const char name[], hid_t type, hid_t memory_type, size_t n, const void *data)
+{
+  const hsize_t extent[1] = {n};
+  hid_t         space, links, set;
+
+  if (file->failed) return;
+  space = H5Screate_simple(1, extent, NULL);
+  links = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(links, 1);
+  set = H5Dcreate2(file->id, name, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
+  if (set < 0 || (n && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || H5Dclose(set) < 0) FailFromHDF5(file, "write", name);
+  H5Pclose(links);
   H5Sclose(space);
 }
 
@@ -267,7 +281,10 @@ static PetscBool PathExists(OutputFile *file, const char name[])
 
   for (const char *slash = strchr(name + 1, '/');; slash = strchr(slash + 1, '/')) {
     snprintf(part, sizeof(part), "%.*s", slash ? (int)(slash - name) : (int)strlen(name), name);
-    if (H5Lexists(file->id, part, H5P_DEFAULT) <= 0) return PETSC_FALSE;
+    const htri_t exists = H5Lexists(file->id, part, H5P_DEFAULT);
+
+    if (exists < 0) FailFromHDF5(file, "group of", name);
+    if (exists <= 0) return PETSC_FALSE;
     if (!slash) return PETSC_TRUE;
   }
 }
@@ -352,4 +369,16 @@ void OutputFileSetInts(OutputFile *file, const char name[], const char attribute
   space = n == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, extent, NULL);
   SetAttribute(file, name, attribute, H5T_STD_I64LE, H5T_NATIVE_INT64, space, values);
   H5Sclose(space);
+}
+
+PetscInt64 OutputFileGetInt(OutputFile *file, const char name[], const char attribute[])
+{
+  PetscInt64 value = -1;
+  hid_t      a;
+
+  if (file->failed || H5Aexists_by_name(file->id, name, attribute, H5P_DEFAULT) <= 0) return -1;
+  a = H5Aopen_by_name(file->id, name, attribute, H5P_DEFAULT, H5P_DEFAULT);
+  if (a < 0 || H5Aget_storage_size(a) != sizeof(value) || H5Aread(a, H5T_NATIVE_INT64, &value) < 0) value = -1;
+  if (a >= 0) H5Aclose(a);
+  return value;
 }

@@ -32,7 +32,9 @@ PETSC_INTERN PetscBool OutputFileClose(OutputFile *file, PetscBool sync);
 PETSC_INTERN void OutputFileFail(OutputFile *file, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 PETSC_INTERN void OutputFileGroup(OutputFile *file, const char name[]);
 /* an empty extendable data set of `columns` columns (1: one-dimensional) that will be filled by about `rows` rows at a time */
-PETSC_INTERN void OutputFileCreateSet(OutputFile *file, const char name[], hid_t type, size_t columns, size_t rows, PetscBool compress, PetscBool checksums);
+PETSC_INTERN void OutputFileCreateSet(OutputFile *file, const char name[], hid_t type, size_t columns, size_t rows, PetscBool compress);
+/* a data set of n values that stays as it is */
+PETSC_INTERN void OutputFileWriteArray(OutputFile *file, const char name[], hid_t type, hid_t memory_type, size_t n, const void *data);
 PETSC_INTERN void OutputFileAppend(OutputFile *file, const char name[], hid_t memory_type, size_t rows, const void *data);
 PETSC_INTERN void OutputFileResize(OutputFile *file, const char name[], size_t rows);
 PETSC_INTERN void OutputFileRead(OutputFile *file, const char name[], hid_t memory_type, size_t start, size_t rows, void *data);
@@ -42,6 +44,8 @@ PETSC_INTERN void OutputFileWriteText(OutputFile *file, const char name[], const
 /* attributes of the object `name`; one that is there is overwritten */
 PETSC_INTERN void OutputFileSetText(OutputFile *file, const char name[], const char attribute[], const char value[]);
 PETSC_INTERN void OutputFileSetInts(OutputFile *file, const char name[], const char attribute[], size_t n, const PetscInt64 values[]);
+/* an integer attribute, -1 when it is not there or something else */
+PETSC_INTERN PetscInt64 OutputFileGetInt(OutputFile *file, const char name[], const char attribute[]);
 
 /* output.c: the one line that every failed write ends in; returns BY_ERR_OUTPUT */
 PETSC_INTERN PetscErrorCode OutputReport(const char path[], const char reason[]);

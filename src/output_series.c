@@ -68,7 +68,7 @@ static PetscErrorCode Finish(Series series, OutputFile *file)
 
 static void CreateTable(OutputFile *file, const char group[], const char name[], size_t columns)
 {
-  OutputFileCreateSet(file, In(group, name).text, H5T_STD_I64LE, columns, STEP_CHUNK, PETSC_FALSE, PETSC_FALSE);
+  OutputFileCreateSet(file, In(group, name).text, H5T_STD_I64LE, columns, STEP_CHUNK, PETSC_FALSE);
 }
 
 static PetscErrorCode CreateFile(Series series, const char scene_text[])
@@ -92,7 +92,7 @@ static PetscErrorCode CreateFile(Series series, const char scene_text[])
 
   OutputFileGroup(&file, "/VTKHDF/Steps");
   OutputFileSetInts(&file, "/VTKHDF/Steps", "NSteps", 1, &none);
-  OutputFileCreateSet(&file, "/VTKHDF/Steps/Values", H5T_IEEE_F64LE, 1, STEP_CHUNK, PETSC_FALSE, PETSC_FALSE);
+  OutputFileCreateSet(&file, "/VTKHDF/Steps/Values", H5T_IEEE_F64LE, 1, STEP_CHUNK, PETSC_FALSE);
   OutputFileSetText(&file, "/VTKHDF/Steps/Values", "units", "s");
   CreateTable(&file, "/VTKHDF/Steps", "PartOffsets", 1);
   CreateTable(&file, "/VTKHDF/Steps", "NumberOfParts", 1);
@@ -373,7 +373,7 @@ static PetscErrorCode AddPart(Series series, OutputFile *file, PetscInt n)
   PetscCall(PetscMalloc3((size_t)n_cells + 1, &offsets, n_ids, &ids, (size_t)n_cells, &types));
   for (PetscInt c = 0; c <= n_cells; c++) offsets[c] = (PetscInt64)c * layout->nodes;
   for (size_t i = 0; i < n_ids; i++) ids[i] = series->kind == SERIES_POINTS ? (PetscInt)i : series->cells[i];
-  memset(types, layout->vtk_cell, (size_t)n_cells);
+  if (n_cells) memset(types, layout->vtk_cell, (size_t)n_cells);
   OutputFileAppend(file, "/VTKHDF/NumberOfPoints", H5T_NATIVE_INT64, 1, &part->n_points);
   for (int c = 0; c < CategoryCount(series); c++) {
     const PetscBool  used   = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
@@ -402,18 +402,18 @@ static PetscErrorCode CreateSets(Series series, OutputFile *file, PetscInt n, Pe
   for (int c = 0; c < CategoryCount(series); c++) {
     const PetscBool used = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
 
-    OutputFileCreateSet(file, In(Category(series, c), "Offsets").text, H5T_STD_I64LE, 1, used ? n_cells + 1 : STEP_CHUNK, used, PETSC_FALSE);
-    OutputFileCreateSet(file, In(Category(series, c), "Connectivity").text, H5T_STD_I64LE, 1, used ? n_cells * (size_t)layout->nodes : STEP_CHUNK, used, PETSC_FALSE);
+    OutputFileCreateSet(file, In(Category(series, c), "Offsets").text, H5T_STD_I64LE, 1, used ? n_cells + 1 : STEP_CHUNK, used);
+    OutputFileCreateSet(file, In(Category(series, c), "Connectivity").text, H5T_STD_I64LE, 1, used ? n_cells * (size_t)layout->nodes : STEP_CHUNK, used);
   }
-  if (series->kind == SERIES_TETRAHEDRA) OutputFileCreateSet(file, "/VTKHDF/Types", H5T_STD_U8LE, 1, n_cells, PETSC_TRUE, PETSC_FALSE);
-  OutputFileCreateSet(file, "/VTKHDF/Points", type, 3, rows, PETSC_TRUE, PETSC_FALSE);
+  if (series->kind == SERIES_TETRAHEDRA) OutputFileCreateSet(file, "/VTKHDF/Types", H5T_STD_U8LE, 1, n_cells, PETSC_TRUE);
+  OutputFileCreateSet(file, "/VTKHDF/Points", type, 3, rows, PETSC_TRUE);
   OutputFileSetText(file, "/VTKHDF/Points", "units", "m");
   for (PetscInt f = 0; f < n_fields; f++) {
     const Path path = In("/VTKHDF/PointData", fields[f].name);
 
     PetscCheck(fields[f].components == 1 || fields[f].components == 3, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "field %s has %" PetscInt_FMT " components", fields[f].name, fields[f].components);
     PetscCall(AddField(series, fields[f].name, fields[f].unit, fields[f].components));
-    OutputFileCreateSet(file, path.text, type, (size_t)fields[f].components, rows, PETSC_TRUE, PETSC_FALSE);
+    OutputFileCreateSet(file, path.text, type, (size_t)fields[f].components, rows, PETSC_TRUE);
     OutputFileSetText(file, path.text, "units", fields[f].unit && *fields[f].unit ? fields[f].unit : "1");
     CreateTable(file, "/VTKHDF/Steps/PointDataOffsets", fields[f].name, 1);
   }
