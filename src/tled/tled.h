@@ -48,6 +48,7 @@ BY_EXTERN PetscErrorCode TLEDGetMesh(TLED tled, const PetscInt *tets[], const Pe
 /* boundary triangles, n x 3 node numbers, outward by the right-hand rule; wetted_only picks the groups of `wetted` */
 BY_EXTERN PetscErrorCode TLEDGetSurface(TLED tled, PetscBool wetted_only, PetscInt *n_triangles, const PetscInt *triangles[]);
 /* nodes of a physical group; unknown group: n = 0 */
+BY_EXTERN PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n, const PetscInt *nodes[]);
 BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
 BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* no fixed or prescribed node        */
 BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]); /* n_nodes             */
@@ -60,8 +61,8 @@ BY_EXTERN PetscErrorCode TLEDGetPositions(TLED tled, const PetscReal *x[], const
 
 /* critical step 2/omega_max of the current state by power iteration [s], without the safety factor */
 BY_EXTERN PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt);
-/* Advance by exactly `dt` in the fewest equal substeps <= safety * critical step, external force f held, leapfrog in kick-drift
-   form (v += a dt_s; u += v dt_s); n_substeps is what was taken. An inverted element, NaN or a step over the limit returns
+/* Advance by exactly `dt` in the fewest equal substeps <= safety * critical step, external force f held, central differences in
+   velocity form (half kick, drift, half kick: u and v at the same time); n_substeps is what was taken. An inverted element, NaN or a step over the limit returns
    BY_ERR_BREAKDOWN, TLEDGetBreakdown tells element, position and time. The critical step is renewed as the body deforms. */
 BY_EXTERN PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps);
 BY_EXTERN PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps);
@@ -72,6 +73,10 @@ BY_EXTERN PetscErrorCode TLEDRestore(TLED tled);
 /* sum over the substeps of the last Advance of dt_s sum_a x_a x f_a [N m s], the moment that the held forces f really gave (3 numbers, borrowed):
    the coupler keeps angular momentum with it */
 BY_EXTERN PetscErrorCode TLEDGetAngularImpulse(TLED tled, const PetscReal *impulse[]);
+/* what Advance carries on besides u and v (time, works, critical step, its mode) as n numbers, for a checkpoint: with u, v and f set to
+   what they were and then SetState, a run goes on with the same bits. GetState(tled, &n, NULL) asks for n. */
+BY_EXTERN PetscErrorCode TLEDGetState(TLED tled, PetscInt *n, PetscReal state[]);
+BY_EXTERN PetscErrorCode TLEDSetState(TLED tled, PetscInt n, const PetscReal state[]);
 BY_EXTERN PetscErrorCode TLEDGetTime(TLED tled, PetscReal *time);
 BY_EXTERN PetscErrorCode TLEDSetTime(TLED tled, PetscReal time);
 

@@ -1,0 +1,269 @@
+/* tled.c - the life of a body: Create, SetFromOptions, SetUp, View, Destroy, and what it lends. */
+#include "tled/tled_impl.h"
+#include "tled/tled_element.h"
+#include <string.h>
+
+PetscClassId  TLED_CLASSID;
+PetscLogEvent TLED_EVENT_ADVANCE, TLED_EVENT_TANGENT, TLED_EVENT_CRITICAL;
+
+static PetscErrorCode RegisterClass(void)
+{
+  static PetscBool registered = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  if (registered) PetscFunctionReturn(PETSC_SUCCESS);
+  registered = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("TLED", &TLED_CLASSID));
+  PetscCall(PetscLogEventRegister("TLEDAdvance", TLED_CLASSID, &TLED_EVENT_ADVANCE));
+  PetscCall(PetscLogEventRegister("TLEDTangent", TLED_CLASSID, &TLED_EVENT_TANGENT));
+  PetscCall(PetscLogEventRegister("TLEDCritical", TLED_CLASSID, &TLED_EVENT_CRITICAL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TLEDCreate - an elastic body with the default parameters
+
+  Collective
+
+  Input Parameters:
++ comm - one process (the body is not distributed)
+- name - name of the body; its options begin with -<name>_
+
+  Output Parameter:
+. tled - the body; TLEDDestroy() frees it
+
+.seealso: TLEDSetFromOptions(), TLEDSetUp()
+@*/
+PetscErrorCode TLEDCreate(MPI_Comm comm, const char name[], TLED *tled)
+{
+  TLED        t;
+  char        prefix[BY_NAME_MAX + 1];
+  PetscMPIInt size;
+
+  PetscFunctionBegin;
+  *tled = NULL;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCheck(size == 1, comm, PETSC_ERR_SUP, "a TLED lives on one process, not on %d", size);
+  PetscCall(RegisterClass());
+  PetscCall(PetscHeaderCreate(t, TLED_CLASSID, "TLED", "elastic body", "TLED", comm, TLEDDestroy, TLEDView));
+  PetscCall(PetscSNPrintf(prefix, sizeof prefix, "%s_", name));
+  PetscCall(PetscObjectSetName((PetscObject)t, name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)t, prefix));
+  PetscCall(KeysSetDefaults(TLEDKeys, &t->params));
+  *tled = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ TLEDGetParams - the parameters, to be read or, before TLEDSetUp(), changed @*/
+PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params)
+{
+  PetscFunctionBegin;
+  *params = &tled->params;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys) @*/
+PetscErrorCode TLEDSetFromOptions(TLED tled)
+{
+  PetscFunctionBegin;
+  ByCall(KeysSetFromOptions(TLEDKeys, ((PetscObject)tled)->prefix, &tled->params));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ TLEDSetGravity - acceleration of gravity [m/s^2]; may be changed between TLEDAdvance() calls @*/
+PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(tled->gravity, g, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* marks of the nodes of the groups in `names` */
+static PetscErrorCode MarkNodes(TLED tled, const char key[], const Names *names, signed char motion)
+{
+  const TLEDGroup *group;
+  char             full[2*BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(full, sizeof full, "%s.%s", ((PetscObject)tled)->name, key));
+  for (PetscInt i = 0; i < names->n; i++) {
+    ByCall(TLEDMeshNeedGroup_Private(&tled->mesh, tled->params.mesh, full, names->name[i], 0, &group));
+    for (PetscInt k = 0; k < group->n_nodes; k++) {
+      signed char *mark = &tled->motion[group->nodes[k]];
+      if (*mark && *mark != motion)
+        PetscFunctionReturn(InputError(full, "names the group %s, which shares nodes with a group of the other of fixed and prescribed\n  a node can only be held or moved", names->name[i]));
+      *mark = motion;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* the wetted triangles: of the groups named, each once, in the order of the boundary; all when none is named */
+static PetscErrorCode PickWetted(TLED tled)
+{
+  const Names     *names = &tled->params.wetted;
+  const TLEDMesh  *mesh = &tled->mesh;
+  const TLEDGroup *group;
+  char             full[2*BY_NAME_MAX];
+  PetscBool       *wet;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(full, sizeof full, "%s.wetted", ((PetscObject)tled)->name));
+  PetscCall(PetscCalloc1(mesh->n_triangles, &wet));
+  for (PetscInt i = 0; i < names->n; i++) {
+    PetscErrorCode ierr = TLEDMeshNeedGroup_Private(mesh, tled->params.mesh, full, names->name[i], 2, &group);
+    if (ierr) PetscCall(PetscFree(wet));
+    ByCall(ierr);
+    for (PetscInt k = 0; k < group->n_triangles; k++) wet[group->triangles[k]] = PETSC_TRUE;
+  }
+  PetscCall(PetscMalloc1(3*mesh->n_triangles, &tled->wetted));
+  for (PetscInt t = 0; t < mesh->n_triangles; t++) {
+    if (names->n && !wet[t]) continue;
+    PetscCall(PetscArraycpy(&tled->wetted[3*tled->n_wetted++], &mesh->triangles[3*t], 3));
+  }
+  PetscCall(PetscFree(wet));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* lumped mass: a quarter of each element's to its corners */
+static PetscErrorCode LumpMass(TLED tled)
+{
+  const TLEDBlocks *b = &tled->blocks;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(tled->mesh.n_nodes, &tled->mass));
+  tled->volume = 0.0;
+  for (int l = 0; l < TLED_LANES*b->n_packs; l++) {
+    if (b->element[l] < 0) continue;
+    tled->volume += b->V0[l];
+    for (int a = 0; a < 4; a++) tled->mass[tled->mesh.tets[4*b->element[l] + a]] += 0.25*tled->params.density*b->V0[l];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpLoops(TLED tled)
+{
+  const TLEDParams *p = &tled->params;
+  TLEDLoops        *w = &tled->loops;
+
+  PetscFunctionBegin;
+  w->blocks = &tled->blocks;
+  w->law    = p->material == TLED_MATERIAL_NEO_HOOKEAN ? TLED_LAW_NEO_HOOKEAN : TLED_LAW_ST_VENANT_KIRCHHOFF;
+  w->anp    = p->element == TLED_ELEMENT_ANP || (p->element == TLED_ELEMENT_AUTO && p->poisson > 0.4);
+  w->mu     = p->young / (2.0*(1.0 + p->poisson));
+  w->lambda = p->young*p->poisson / ((1.0 + p->poisson)*(1.0 - 2.0*p->poisson));
+  PetscCall(PetscMalloc2(3*tled->blocks.n_slots, &w->partial, tled->blocks.n_blocks, &w->status));
+  if (w->anp) {
+    PetscCall(PetscMalloc3(tled->mesh.n_nodes, &w->nodal, tled->mesh.n_nodes, &w->pressure, tled->mesh.n_nodes, &w->weight));
+    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 0.25*p->density / tled->mass[a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateVectors(TLED tled)
+{
+  const PetscInt n = 3*tled->mesh.n_nodes, n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
+  PetscReal     *v;
+
+  PetscFunctionBegin;
+  PetscCall(VecCreate(PetscObjectComm((PetscObject)tled), &tled->u));
+  PetscCall(VecSetSizes(tled->u, n, n));
+  PetscCall(VecSetBlockSize(tled->u, 3));
+  PetscCall(VecSetType(tled->u, VECSTANDARD));
+  PetscCall(VecSet(tled->u, 0.0));
+  PetscCall(VecDuplicate(tled->u, &tled->v));
+  PetscCall(VecDuplicate(tled->u, &tled->f));
+  PetscCall(VecSet(tled->f, 0.0));
+  PetscCall(PetscMalloc5(n, &tled->x, n, &tled->force, n, &tled->probe, n, &tled->mode, n, &tled->trial));
+  PetscCall(PetscMalloc3(5*n, &tled->krylov, 4*n, &tled->saved, n_chunks*TLED_SUMS, &tled->sums));
+  PetscCall(PetscArrayzero(tled->mode, n));
+  PetscCall(PetscArrayzero(tled->sums, n_chunks*TLED_SUMS));
+  PetscCall(VecGetArrayWrite(tled->v, &v));
+  for (PetscInt k = 0; k < n; k++)
+    v[k] = tled->motion[k / 3] == TLED_FREE ? tled->params.velocity[k % 3] : tled->motion[k / 3] == TLED_PRESCRIBED ? tled->params.prescribed_velocity[k % 3] : 0.0;
+  PetscCall(VecRestoreArrayWrite(tled->v, &v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TLEDSetUp - read the mesh and make everything ready to advance
+
+  Collective
+
+  Errors: BY_ERR_INPUT, reported with mesh, group and element, when the mesh or its groups cannot be used
+
+.seealso: TLEDCreate(), TLEDAdvance()
+@*/
+PetscErrorCode TLEDSetUp(TLED tled)
+{
+  char key[2*BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCheck(!tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() was called before");
+  PetscCall(PetscSNPrintf(key, sizeof key, "%s.mesh", ((PetscObject)tled)->name));
+  ByCall(TLEDMeshRead_Private(key, &tled->params, &tled->mesh));
+  PetscCall(TLEDBlocksCreate_Private(&tled->mesh, &tled->blocks));
+  PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
+  ByCall(MarkNodes(tled, "fixed", &tled->params.fixed, TLED_FIXED));
+  ByCall(MarkNodes(tled, "prescribed", &tled->params.prescribed, TLED_PRESCRIBED));
+  ByCall(PickWetted(tled));
+  tled->is_free = PETSC_TRUE;
+  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
+    if (tled->motion[a] == TLED_FREE) continue;
+    tled->constrained[a] = PETSC_TRUE;
+    tled->is_free        = PETSC_FALSE;
+  }
+  PetscCall(LumpMass(tled));
+  PetscCall(SetUpLoops(tled));
+  PetscCall(CreateVectors(tled));
+  tled->set_up = PETSC_TRUE;
+  PetscCall(PetscObjectViewFromOptions((PetscObject)tled, NULL, "-view"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ TLEDView - print every parameter with its unit, and the size of the mesh once it is read @*/
+PetscErrorCode TLEDView(TLED tled, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)tled), &viewer));
+  PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)tled, viewer));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  if (tled->set_up) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " nodes, %" PetscInt_FMT " tetrahedra in %d blocks, %" PetscInt_FMT " boundary triangles (%" PetscInt_FMT " wetted), volume %g m^3, element %s\n", tled->mesh.n_nodes,
+                                     tled->mesh.n_tets, tled->blocks.n_blocks, tled->mesh.n_triangles, tled->n_wetted, (double)tled->volume, tled->loops.anp ? "anp" : "t4"));
+    if (tled->state.critical > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "critical step %g s\n", (double)tled->state.critical));
+  }
+  PetscCall(KeysView(TLEDKeys, &tled->params, viewer));
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ TLEDDestroy - free a body; NULL and half-built ones are fine @*/
+PetscErrorCode TLEDDestroy(TLED *tled)
+{
+  TLED t;
+
+  PetscFunctionBegin;
+  if (!tled || !*tled) PetscFunctionReturn(PETSC_SUCCESS);
+  t     = *tled;
+  *tled = NULL;
+  if (--((PetscObject)t)->refct > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TLEDMeshDestroy_Private(&t->mesh));
+  PetscCall(TLEDBlocksDestroy_Private(&t->blocks));
+  PetscCall(PetscFree2(t->loops.partial, t->loops.status));
+  PetscCall(PetscFree3(t->loops.nodal, t->loops.pressure, t->loops.weight));
+  PetscCall(PetscFree(t->wetted));
+  PetscCall(PetscFree(t->mass));
+  PetscCall(PetscFree2(t->motion, t->constrained));
+  PetscCall(VecDestroy(&t->u));
+  PetscCall(VecDestroy(&t->v));
+  PetscCall(VecDestroy(&t->f));
+  PetscCall(PetscFree5(t->x, t->force, t->probe, t->mode, t->trial));
+  PetscCall(PetscFree3(t->krylov, t->saved, t->sums));
+  PetscCall(PetscFree(t->tangent_row));
+  PetscCall(PetscFree(t->tangent_column));
+  PetscCall(PetscFree(t->tangent_slot));
+  PetscCall(PetscFree(t->tangent_value));
+  PetscCall(PetscHeaderDestroy(&t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

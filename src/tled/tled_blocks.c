@@ -1,0 +1,174 @@
+/* tled_blocks.c - tetrahedra cut into cache-sized blocks by METIS, nodes and elements renumbered along them, packed for vector loops. */
+#include "tled/tled_impl.h"
+#include "tled/tled_element.h"
+#include <metis.h>
+
+/* part[e]: the METIS part of each tetrahedron, from the graph of elements that share a face. Recursive bisection gives neighbours
+   near numbers; a fixed seed gives the same cut every time. */
+static PetscErrorCode CutElements(const TLEDMesh *mesh, PetscInt part[])
+{
+  idx_t  n_tets = mesh->n_tets, n_nodes = mesh->n_nodes, n_common = 3, n_parts, cut, options[METIS_NOPTIONS];
+  idx_t *offset, *corner, *element_part, *node_part;
+  int    status;
+
+  PetscFunctionBegin;
+  n_parts = (n_tets + (TLED_BLOCK_TETS*7)/8 - 1) / ((TLED_BLOCK_TETS*7)/8); /* an eighth of room for METIS's imbalance */
+  PetscCall(PetscMalloc4(n_tets + 1, &offset, 4*n_tets, &corner, n_tets, &element_part, n_nodes, &node_part));
+  for (PetscInt e = 0; e <= n_tets; e++) offset[e] = 4*e;
+  for (PetscInt k = 0; k < 4*n_tets; k++) corner[k] = mesh->tets[k];
+  for (PetscInt e = 0; e < n_tets; e++) element_part[e] = 0;
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_PTYPE] = METIS_PTYPE_RB;
+  options[METIS_OPTION_SEED]  = 1;
+  status = n_parts > 1 ? METIS_PartMeshDual(&n_tets, &n_nodes, offset, corner, NULL, NULL, &n_common, &n_parts, NULL, options, &cut, element_part, node_part) : METIS_OK;
+  PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_PartMeshDual failed with status %d", status);
+  for (PetscInt e = 0; e < n_tets; e++) part[e] = element_part[e];
+  PetscCall(PetscFree4(offset, corner, element_part, node_part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* new numbers: elements by part, nodes in the order in which these meet them; nodes of no element are dropped */
+static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
+{
+  PetscInt  *order, *key, *number, n = 0, m, *tets, *tag;
+  PetscReal *X;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(mesh->n_tets, &order, mesh->n_tets, &key, mesh->n_nodes, &number));
+  for (PetscInt e = 0; e < mesh->n_tets; e++) order[e] = e, key[e] = part[e];
+  PetscCall(PetscSortIntWithArray(mesh->n_tets, key, order));
+  for (PetscInt e = 0, first = 0; e < mesh->n_tets; e++) { /* within a part, the file's order */
+    if (e + 1 < mesh->n_tets && key[e + 1] == key[first]) continue;
+    PetscCall(PetscSortInt(e + 1 - first, &order[first]));
+    first = e + 1;
+  }
+  for (PetscInt a = 0; a < mesh->n_nodes; a++) number[a] = -1;
+  PetscCall(PetscMalloc3(3*mesh->n_nodes, &X, 4*mesh->n_tets, &tets, mesh->n_tets, &tag));
+  for (PetscInt e = 0; e < mesh->n_tets; e++) {
+    tag[e] = mesh->tag[order[e]];
+    for (PetscInt a = 0; a < 4; a++) {
+      const PetscInt old = mesh->tets[4*order[e] + a];
+      if (number[old] < 0) {
+        for (PetscInt k = 0; k < 3; k++) X[3*n + k] = mesh->X[3*old + k];
+        number[old] = n++;
+      }
+      tets[4*e + a] = number[old];
+    }
+  }
+  for (PetscInt k = 0; k < 3*mesh->n_triangles; k++) mesh->triangles[k] = number[mesh->triangles[k]];
+  for (PetscInt g = 0; g < mesh->n_groups; g++) {
+    TLEDGroup *group = &mesh->groups[g];
+    m = 0;
+    for (PetscInt i = 0; i < group->n_nodes; i++)
+      if (number[group->nodes[i]] >= 0) group->nodes[m++] = number[group->nodes[i]];
+    group->n_nodes = m;
+    PetscCall(PetscSortInt(m, group->nodes));
+  }
+  PetscCall(PetscFree3(mesh->X, mesh->tets, mesh->tag));
+  mesh->X = X, mesh->tets = tets, mesh->tag = tag, mesh->n_nodes = n;
+  PetscCall(PetscFree3(order, key, number));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Walk the elements in order and close a block when its part ends or it is full. With `blocks` NULL's arrays (n_* only) it counts; the
+   second walk fills. local_of[a] and block_of[a] are work of n_nodes. */
+static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of[], int local_of[], TLEDBlocks *b, PetscBool fill)
+{
+  int n_in_block = 0, n_nodes = 0, lane;
+
+  b->n_blocks = b->n_packs = b->n_slots = 0;
+  for (PetscInt a = 0; a < mesh->n_nodes; a++) block_of[a] = -1;
+  for (PetscInt e = 0; e < mesh->n_tets; e++) {
+    if (e == 0 || part[e] != part[e - 1] || n_in_block == TLED_BLOCK_TETS || n_nodes + 4 > TLED_BLOCK_NODES) {
+      if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
+      b->n_blocks++;
+      n_in_block = n_nodes = 0;
+    }
+    if (n_in_block % TLED_LANES == 0) b->n_packs++;
+    lane = n_in_block++ % TLED_LANES;
+    for (PetscInt k = 0; k < 4; k++) {
+      const PetscInt a = mesh->tets[4*e + k];
+      if (block_of[a] != b->n_blocks) {
+        block_of[a] = b->n_blocks, local_of[a] = n_nodes++;
+        if (fill) b->node[b->n_slots] = (int)a;
+        b->n_slots++;
+      }
+      if (fill) b->local[(4*(b->n_packs - 1) + k)*TLED_LANES + lane] = local_of[a];
+    }
+    if (fill) b->element[(b->n_packs - 1)*TLED_LANES + lane] = (int)e;
+  }
+  if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
+}
+
+/* gradients and volumes of each lane */
+static void FillGeometry(const TLEDMesh *mesh, TLEDBlocks *b)
+{
+  for (int l = 0; l < b->n_packs*TLED_LANES; l++) {
+    const int pack = l / TLED_LANES, lane = l % TLED_LANES, e = b->element[l];
+    double    x[12], G[9] = {0.0};
+    if (e < 0) continue;
+    for (int a = 0; a < 4; a++)
+      for (int k = 0; k < 3; k++) x[3*a + k] = mesh->X[3*mesh->tets[4*e + a] + k];
+    b->V0[l] = TLEDReferenceGradients(x, G);
+    for (int k = 0; k < 9; k++) b->G[(9*pack + k)*TLED_LANES + lane] = G[k];
+  }
+}
+
+/* slots of each node, ascending */
+static PetscErrorCode FillSlots(TLEDBlocks *b)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(b->n_nodes + 1, &b->slot_offset));
+  PetscCall(PetscMalloc1(b->n_slots, &b->slot));
+  for (int s = 0; s < b->n_slots; s++) b->slot_offset[b->node[s] + 1]++;
+  for (int a = 0; a < b->n_nodes; a++) b->slot_offset[a + 1] += b->slot_offset[a];
+  for (int s = 0; s < b->n_slots; s++) b->slot[b->slot_offset[b->node[s]]++] = s;
+  for (int a = b->n_nodes; a > 0; a--) b->slot_offset[a] = b->slot_offset[a - 1];
+  b->slot_offset[0] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  TLEDBlocksCreate_Private - renumber the mesh for locality and cut it into blocks
+
+  Input/Output Parameter:
+. mesh - nodes, elements, triangles and groups get new numbers; nodes of no element disappear
+
+  Output Parameter:
+. blocks - the elements in blocks and packs; the cut depends on the mesh alone, not on threads
+*/
+PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *b)
+{
+  PetscInt *part;
+  int      *block_of, *local_of;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(b, sizeof *b));
+  PetscCall(PetscMalloc1(mesh->n_tets, &part));
+  PetscCall(CutElements(mesh, part));
+  PetscCall(Renumber(mesh, part));
+  PetscCall(PetscSortInt(mesh->n_tets, part)); /* elements now lie in the order of their parts */
+  PetscCall(PetscMalloc2(mesh->n_nodes, &block_of, mesh->n_nodes, &local_of));
+  b->n_nodes = (int)mesh->n_nodes;
+  FillBlocks(mesh, part, block_of, local_of, b, PETSC_FALSE);
+  PetscCall(PetscMalloc3(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node));
+  PetscCall(PetscCalloc4(4*b->n_packs*TLED_LANES, &b->local, b->n_packs*TLED_LANES, &b->element, 9*b->n_packs*TLED_LANES, &b->G, b->n_packs*TLED_LANES, &b->V0));
+  for (int l = 0; l < b->n_packs*TLED_LANES; l++) b->element[l] = -1;
+  FillBlocks(mesh, part, block_of, local_of, b, PETSC_TRUE);
+  FillGeometry(mesh, b);
+  PetscCall(FillSlots(b));
+  PetscCall(PetscFree2(block_of, local_of));
+  PetscCall(PetscFree(part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *b)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree3(b->pack_offset, b->node_offset, b->node));
+  PetscCall(PetscFree4(b->local, b->element, b->G, b->V0));
+  PetscCall(PetscFree(b->slot_offset));
+  PetscCall(PetscFree(b->slot));
+  PetscCall(PetscMemzero(b, sizeof *b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,146 @@
+/* tled_impl.h - the inside of a TLED; only src/tled includes it. */
+#ifndef BY_TLED_IMPL_H
+#define BY_TLED_IMPL_H
+
+#include "tled/tled.h"
+#include "tled/tled_step.h"
+#include <petsc/private/petscimpl.h>
+
+#define TLED_LANES           8   /* elements that are worked on at once: one AVX-512 register of doubles          */
+#define TLED_BLOCK_TETS      256 /* elements of a block at most: its gradients and nodes stay in a core's L1/L2 cache */
+#define TLED_BLOCK_NODES     256 /* nodes of a block at most                                                       */
+#define TLED_CHUNK           128 /* nodes whose contributions to a sum are added first, for any number of threads  */
+#define TLED_MESSAGE         512 /* characters of a breakdown message                                              */
+
+/* A named physical group of the mesh file. */
+typedef struct {
+  char      name[BY_NAME_MAX];
+  PetscInt  dim;         /* 2 surface, 3 volume                                        */
+  PetscInt  n_nodes;     /* nodes of the group, ascending                              */
+  PetscInt *nodes;
+  PetscInt  n_triangles; /* boundary triangles of a surface group, numbers of TLEDMesh.triangles */
+  PetscInt *triangles;
+} TLEDGroup;
+
+/* The mesh as read, then renumbered block by block. */
+typedef struct {
+  PetscInt   n_nodes, n_tets, n_triangles, n_groups;
+  PetscReal *X;         /* n_nodes x 3 [m]                                  */
+  PetscInt  *tets;      /* n_tets x 4                                       */
+  PetscInt  *tag;       /* number of each tetrahedron in the gmsh file      */
+  PetscInt  *triangles; /* boundary, n_triangles x 3, outward               */
+  TLEDGroup *groups;
+} TLEDMesh;
+
+/* What the header and the element list of a gmsh file say, before PETSc reads it. */
+typedef struct {
+  PetscInt  n_groups;                       /* named physical groups     */
+  char      name[BY_NAMES_MAX][BY_NAME_MAX];
+  PetscInt  dim[BY_NAMES_MAX];
+  PetscInt  n_tets, n_triangles;            /* first order; -1: not counted (binary file) */
+  PetscInt  n_other;                        /* elements of other kinds with a volume or of higher order */
+  char      other[64];                      /* what the first of them is */
+  PetscInt *tag;                            /* number of each tetrahedron, in the file's order; NULL for a binary file */
+} TLEDGmshFile;
+
+/* Elements in blocks, a block's elements in packs of TLED_LANES as structures of arrays. Each block adds up the forces on its own nodes
+   in a fixed order; each node then adds its blocks in a fixed order: the same bits for any number of threads, no atomics. */
+typedef struct {
+  int     n_blocks, n_packs, n_slots, n_nodes;
+  int    *pack_offset; /* n_blocks + 1                                                           */
+  int    *node_offset; /* n_blocks + 1, into `node`; also the block's slots of a partial sum     */
+  int    *node;        /* n_slots: node of each slot                                             */
+  int    *local;       /* n_packs x 4 x TLED_LANES: the corners as numbers within the block      */
+  int    *element;     /* n_packs x TLED_LANES: number of the element, -1 for padding            */
+  double *G;           /* n_packs x 9 x TLED_LANES [1/m], 0 for padding                          */
+  double *V0;          /* n_packs x TLED_LANES [m^3], 0 for padding                              */
+  int    *slot_offset; /* n_nodes + 1                                                            */
+  int    *slot;        /* n_slots: the slots of each node                                        */
+} TLEDBlocks;
+
+/* What the element loops need; raw pointers only, so that they run inside a parallel region. */
+typedef struct {
+  const TLEDBlocks *blocks;
+  int               law, anp;    /* material; 1 = average nodal pressure                           */
+  double            mu, lambda;  /* [Pa]                                                           */
+  double           *partial;     /* n_slots x 3: forces of a block on its nodes [N]                */
+  double           *nodal;       /* n_nodes: J_a - 1, then q_a [Pa] (anp)                          */
+  double           *pressure;    /* n_nodes (anp)                                                  */
+  double           *weight;      /* n_nodes: 1/sum_e V0_e [1/m^3] (anp)                            */
+  int              *status;      /* n_blocks: 1 where an element has det F <= 0 or NaN             */
+} TLEDLoops;
+
+/* State that Advance changes; u and v apart (they are Vecs). */
+typedef struct {
+  PetscReal time;          /* [s]                                                                   */
+  PetscReal damping_loss;  /* by mass-proportional damping [J]                                      */
+  PetscReal external_work; /* [J]                                                                   */
+  PetscReal internal_work; /* by the internal forces including stiffness damping [J]; only with it  */
+  PetscReal moment[3];     /* of the external forces in the last Advance, about the origin [N m s]; free bodies only */
+  PetscReal critical;      /* critical step [s]; 0 = not known                                      */
+  PetscReal stretch[2];    /* smallest det F and largest |F|^2 when it was computed                 */
+  PetscReal since, look;   /* substeps taken since; how many when the deformation is looked at next  */
+} TLEDState;
+
+struct _p_TLED {
+  PETSCHEADER(int);
+  TLEDParams   params;
+  PetscReal    gravity[3];     /* [m/s^2]                                                     */
+  PetscBool    set_up;
+  TLEDMesh     mesh;
+  PetscInt     n_wetted;       /* triangles of the wetted groups                              */
+  PetscInt    *wetted;         /* n_wetted x 3                                                */
+  PetscReal   *mass;           /* lumped, n_nodes [kg]                                        */
+  PetscReal    volume;         /* reference [m^3]                                             */
+  PetscBool   *constrained;    /* n_nodes                                                     */
+  signed char *motion;         /* n_nodes: 0 free, 1 fixed, 2 prescribed                      */
+  PetscBool    is_free;
+  TLEDBlocks   blocks;
+  TLEDLoops    loops;
+  Vec          u, v, f;
+  PetscReal   *x;              /* X + u, n_nodes x 3, of TLEDGetPositions()                   */
+  PetscReal   *force;          /* f_int of the last substep, n_nodes x 3 [N]                  */
+  PetscReal   *probe;          /* work: displacement at which forces are asked, n_nodes x 3   */
+  PetscReal   *mode;           /* highest mode, of unit mass norm, n_nodes x 3                */
+  PetscReal   *krylov;         /* work of the critical step, 5 x (n_nodes x 3)                */
+  PetscReal   *trial;          /* work: forces, n_nodes x 3                                   */
+  PetscReal   *sums;           /* work: n_chunks x TLED_SUMS                                  */
+  PetscObjectState force_state; /* state of u for which `force` is right, with force_valid    */
+  PetscBool    force_valid;
+  TLEDState    state, saved_state;
+  PetscReal   *saved;          /* u, v, force, mode: 4 x (n_nodes x 3)                        */
+  PetscBool    saved_valid, saved_force_valid;
+  PetscInt     substeps, saved_substeps; /* taken since the start                             */
+  PetscInt    *tangent_slot;   /* n_tets x 16: place of each 3 x 3 block in the tangent       */
+  PetscInt    *tangent_row, *tangent_column; /* block CSR of the tangent                      */
+  PetscReal   *tangent_value;
+  char         breakdown[TLED_MESSAGE];
+};
+
+extern PetscLogEvent TLED_EVENT_ADVANCE, TLED_EVENT_TANGENT, TLED_EVENT_CRITICAL;
+
+/* tled_gmsh.c */
+PetscErrorCode TLEDGmshRead_Private(const char key[], const char path[], TLEDGmshFile *file);
+PetscErrorCode TLEDGmshDestroy_Private(TLEDGmshFile *file);
+/* tled_mesh.c */
+PetscErrorCode TLEDMeshRead_Private(const char key[], const TLEDParams *params, TLEDMesh *mesh);
+PetscErrorCode TLEDMeshDestroy_Private(TLEDMesh *mesh);
+PetscErrorCode TLEDMeshFindGroup_Private(const TLEDMesh *mesh, const char name[], const TLEDGroup **group);
+PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[], const char key[], const char name[], PetscInt dim, const TLEDGroup **group);
+/* tled_blocks.c */
+PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *blocks);
+PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);
+/* tled_openmp.c: called by all threads of a parallel region, or outside one */
+void TLEDElementForces_OpenMP(const TLEDLoops *loops, const double u[]);
+void TLEDGatherForces_OpenMP(const TLEDLoops *loops, double f[]);
+void TLEDNodalVolumes_OpenMP(const TLEDLoops *loops, const double u[]); /* fills loops->nodal (anp) */
+int  TLEDElementsBroken_OpenMP(const TLEDLoops *loops);
+/* tled_energy.c */
+PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *energy, PetscReal *volume, PetscReal stretch[2]);
+PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscReal time);
+/* tled_critical.c */
+PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt n_steps, PetscReal *dt);
+/* f(u), raw arrays; returns BY_ERR_BREAKDOWN (with no message) when an element is broken */
+PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[]);
+
+#endif

@@ -1,0 +1,279 @@
+/* tled_time.c - advancing the body: substeps of the stable size, the works that go with them, breakdown. */
+#include "tled/tled_impl.h"
+
+#define RENEW_STEPS     64   /* substeps between two looks at the deformation                                        */
+#define RENEW_STRETCH   0.05 /* relative change of the smallest det F or largest |F|^2 that asks for a new critical step */
+#define RENEW_LATEST    1024 /* substeps after which it is renewed anyway                                             */
+#define FIRST_STEPS     100  /* iterations of the first critical step                                                 */
+#define FOLLOWING_STEPS 12   /* of the following ones, which start from the last mode                                 */
+
+/* internal forces at u, raw arrays; BY_ERR_BREAKDOWN, not reported, when an element is inverted or NaN */
+PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[])
+{
+  PetscFunctionBegin;
+#pragma omp parallel
+  {
+    TLEDElementForces_OpenMP(&tled->loops, u);
+    TLEDGatherForces_OpenMP(&tled->loops, f);
+  }
+  if (TLEDElementsBroken_OpenMP(&tled->loops)) PetscFunctionReturn(BY_ERR_BREAKDOWN);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* largest step that the state permits [s]: the critical one, shortened by stiffness damping, times the safety factor */
+static PetscReal LargestStep(TLED tled)
+{
+  const PetscReal critical = tled->state.critical;
+
+  if (critical == PETSC_MAX_REAL) return PETSC_MAX_REAL;
+  return tled->params.safety*TLEDStableStep(critical, tled->params.stiffness_damping);
+}
+
+static PetscInt CountSubsteps(TLED tled, PetscReal dt)
+{
+  return PetscMax(1, (PetscInt)PetscCeilReal(dt / LargestStep(tled)*(1.0 - 1e-12)));
+}
+
+static PetscBool Changed(PetscReal now, PetscReal then) { return PetscAbsReal(now - then) > RENEW_STRETCH*then ? PETSC_TRUE : PETSC_FALSE; }
+
+/* Know the critical step at u: computed when it is not known, after RENEW_LATEST substeps, and when the body has deformed since. It
+   depends on the state alone. */
+static PetscErrorCode RenewCritical(TLED tled, const PetscReal u[], PetscReal time)
+{
+  TLEDState     *s = &tled->state;
+  PetscReal      stretch[2];
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  if (s->critical > 0.0 && s->since < s->look) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TLEDStrain_Private(tled, u, NULL, NULL, stretch));
+  s->look = s->since + RENEW_STEPS;
+  if (s->critical > 0.0 && s->since < RENEW_LATEST && !Changed(stretch[0], s->stretch[0]) && !Changed(stretch[1], s->stretch[1])) PetscFunctionReturn(PETSC_SUCCESS);
+  ierr = TLEDCriticalStep_Private(tled, u, s->critical > 0.0 ? FOLLOWING_STEPS : FIRST_STEPS, &s->critical);
+  if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, time));
+  PetscCall(ierr);
+  s->stretch[0] = stretch[0], s->stretch[1] = stretch[1];
+  s->since = 0.0, s->look = RENEW_STEPS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the substeps work on. */
+typedef struct {
+  PetscReal       *u, *v, *probe;
+  const PetscReal *f;
+  TLEDStep         step;
+  PetscReal        beta; /* stiffness damping [s] */
+} Work;
+
+/* One pass over the nodes, chunk by chunk: close the substep before (gathering its forces) and open the next. All threads call it. */
+static void NodePass(TLED tled, const Work *w, int close, int open)
+{
+  const TLEDLoops  *loops = &tled->loops;
+  const TLEDBlocks *b = loops->blocks;
+  const int         n = b->n_nodes, n_chunks = (n + TLED_CHUNK - 1) / TLED_CHUNK;
+
+#pragma omp for schedule(static)
+  for (int chunk = 0; chunk < n_chunks; chunk++) {
+    double   *sum = &tled->sums[TLED_SUMS*chunk];
+    const int end = (chunk + 1)*TLED_CHUNK < n ? (chunk + 1)*TLED_CHUNK : n;
+    for (int a = chunk*TLED_CHUNK; a < end; a++) {
+      double *force = &tled->force[3*a], *u = &w->u[3*a], *v = &w->v[3*a];
+      if (close) {
+        double f[3] = {0.0, 0.0, 0.0};
+        for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++)
+          for (int i = 0; i < 3; i++) f[i] += loops->partial[3*b->slot[k] + i];
+        for (int i = 0; i < 3; i++) force[i] = f[i];
+        TLEDStepClose(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3*a], v, sum);
+        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3*a], u, &w->f[3*a], sum);
+      }
+      if (open) {
+        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3*a], u, &w->f[3*a], sum);
+        TLEDStepOpen(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3*a], u, v, sum);
+        for (int i = 0; i < 3 && w->beta > 0.0; i++) w->probe[3*a + i] = u[i] + w->beta*v[i];
+      }
+    }
+  }
+}
+
+/* m substeps; returns how many were taken whole, fewer than m when an element broke */
+static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
+{
+  PetscInt done = m;
+
+#pragma omp parallel
+  {
+    PetscInt s;
+    NodePass(tled, w, 0, 1);
+    for (s = 0; s < m; s++) {
+      TLEDElementForces_OpenMP(&tled->loops, w->beta > 0.0 ? w->probe : w->u);
+      if (TLEDElementsBroken_OpenMP(&tled->loops)) break; /* the same answer on every thread */
+      NodePass(tled, w, 1, s + 1 < m);
+    }
+#pragma omp single
+    done = s;
+  }
+  return done;
+}
+
+/* forces at the current u unless they are known from the last substep */
+static PetscErrorCode KnowForces(TLED tled, const PetscReal u[])
+{
+  PetscObjectState state;
+  PetscErrorCode   ierr;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectStateGet((PetscObject)tled->u, &state));
+  if (tled->force_valid && state == tled->force_state) PetscFunctionReturn(PETSC_SUCCESS);
+  ierr = TLEDForces_Private(tled, u, tled->force);
+  if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, tled->state.time));
+  PetscCall(ierr);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* add up the chunks' works in order */
+static void AddWorks(TLED tled)
+{
+  const PetscInt n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
+
+  for (PetscInt c = 0; c < n_chunks; c++) {
+    PetscReal *sum = &tled->sums[TLED_SUMS*c];
+    tled->state.external_work += sum[TLED_SUM_EXTERNAL];
+    tled->state.damping_loss += sum[TLED_SUM_DAMPING];
+    tled->state.internal_work += sum[TLED_SUM_INTERNAL];
+    for (PetscInt k = 0; k < 3; k++) tled->state.moment[k] += sum[TLED_SUM_MOMENT + k];
+    for (PetscInt k = 0; k < TLED_SUMS; k++) sum[k] = 0.0;
+  }
+}
+
+static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *n_substeps)
+{
+  const PetscReal start = tled->state.time;
+  PetscReal       passed = 0.0, h = 0.0;
+  PetscInt        left = 0;
+
+  PetscFunctionBegin;
+  *n_substeps = 0;
+  PetscCall(PetscArrayzero(tled->state.moment, 3));
+  ByCall(KnowForces(tled, w->u));
+  tled->force_valid = PETSC_FALSE; /* until this call has come to its end */
+  do {
+    ByCall(RenewCritical(tled, w->u, start + passed));
+    if (!left || h > LargestStep(tled)*(1.0 + 1e-9)) { /* at first, and when the body has stiffened */
+      left = CountSubsteps(tled, dt - passed);
+      h    = (dt - passed) / (PetscReal)left;
+    }
+    const PetscInt m = PetscMin(left, RENEW_STEPS);
+    w->step.dt          = h;
+    const PetscInt done = Substeps(tled, w, m);
+    AddWorks(tled);
+    *n_substeps += done;
+    tled->state.since += (PetscReal)done;
+    passed += h*(PetscReal)done;
+    left -= done;
+    if (done < m) {
+      tled->state.time = start + passed + h;
+      PetscFunctionReturn(TLEDReportBroken_Private(tled, w->beta > 0.0 ? w->probe : w->u, start + passed + h));
+    }
+  } while (left);
+  tled->state.time  = start + dt;
+  tled->force_valid = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TLEDAdvance - move the body by `dt` under the external force held in f
+
+  Collective
+
+  Input Parameters:
++ tled - the body, set up
+- dt   - time to advance [s], > 0
+
+  Output Parameter:
+. n_substeps - substeps taken (may be NULL)
+
+  Central differences in velocity form (tled_step.h, method 3): the fewest equal substeps not longer than safety times the critical
+  step; u and v are at the same time before and after. With stiffness damping beta, the internal forces are taken at u + beta v.
+
+  Errors: BY_ERR_BREAKDOWN when an element turns inside out or a number is lost; TLEDGetBreakdown() tells which, where and when
+
+  Cost: one force evaluation per substep, no allocation.  Tests: tests/unit/tled/test_time.c
+
+.seealso: TLEDGetSubsteps(), TLEDSave(), TLEDGetCriticalStep()
+@*/
+PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps)
+{
+  const TLEDParams *p = &tled->params;
+  Work              w;
+  PetscInt          n = 0, k;
+  PetscErrorCode    ierr;
+
+  PetscFunctionBegin;
+  PetscCheck(tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() comes before TLEDAdvance()");
+  PetscCheck(dt > 0.0 && !PetscIsInfOrNanReal(dt), PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_OUTOFRANGE, "dt = %g, expected a finite number > 0 [s]", (double)dt);
+  PetscCall(PetscLogEventBegin(TLED_EVENT_ADVANCE, tled, 0, 0, 0));
+  w.probe      = tled->probe;
+  w.beta       = p->stiffness_damping;
+  w.step.alpha = p->damping;
+  for (k = 0; k < 3; k++) w.step.gravity[k] = tled->gravity[k], w.step.velocity[k] = p->prescribed_velocity[k];
+  PetscCall(VecGetArray(tled->u, &w.u));
+  PetscCall(VecGetArray(tled->v, &w.v));
+  PetscCall(VecGetArrayRead(tled->f, &w.f));
+  ierr = AdvanceArrays(tled, dt, &w, &n);
+  PetscCall(VecRestoreArrayRead(tled->f, &w.f));
+  PetscCall(VecRestoreArray(tled->v, &w.v));
+  PetscCall(VecRestoreArray(tled->u, &w.u));
+  PetscCall(PetscObjectStateGet((PetscObject)tled->u, &tled->force_state));
+  tled->substeps += n;
+  if (n_substeps) *n_substeps = n;
+  PetscCall(PetscLogEventEnd(TLED_EVENT_ADVANCE, tled, 0, 0, 0));
+  ByCall(ierr);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* know the critical step of the current state */
+static PetscErrorCode RenewNow(TLED tled)
+{
+  const PetscReal *u;
+  PetscErrorCode   ierr;
+
+  PetscFunctionBegin;
+  PetscCheck(tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() comes first");
+  PetscCall(VecGetArrayRead(tled->u, &u));
+  ierr = RenewCritical(tled, u, tled->state.time);
+  PetscCall(VecRestoreArrayRead(tled->u, &u));
+  ByCall(ierr);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TLEDGetSubsteps - how many substeps TLEDAdvance() would begin to take for `dt` [s]
+
+.seealso: TLEDAdvance()
+@*/
+PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps)
+{
+  PetscFunctionBegin;
+  ByCall(RenewNow(tled));
+  *n_substeps = CountSubsteps(tled, dt);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TLEDGetCriticalStep - largest stable step of the current state [s], without the safety factor
+
+  2/omega_max by power iteration, shortened when there is stiffness damping; computed afresh by this call. PETSC_MAX_REAL when no node is
+  free.
+
+  Errors: BY_ERR_BREAKDOWN when an element of the current state is inverted
+
+.seealso: TLEDAdvance()
+@*/
+PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt)
+{
+  PetscFunctionBegin;
+  tled->state.critical = 0.0;
+  ByCall(RenewNow(tled));
+  *dt = tled->state.critical == PETSC_MAX_REAL ? PETSC_MAX_REAL : TLEDStableStep(tled->state.critical, tled->params.stiffness_damping);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
