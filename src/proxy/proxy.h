@@ -51,6 +51,11 @@ BY_EXTERN PetscErrorCode ProxyGetInterpolation(Proxy proxy, PetscInt *n_proxies,
    that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces at the proxies) */
 BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[]);
 
+/* restart: positions [m], n_nodes x 3, at which the surface was last sampled; setting them samples it there again, to the same bits.
+   After ProxySetSampling call ProxyUpdate with the current positions. */
+BY_EXTERN PetscErrorCode ProxyGetSampling(Proxy proxy, const PetscReal *x[]);
+BY_EXTERN PetscErrorCode ProxySetSampling(Proxy proxy, const PetscReal x[]);
+
 /* proxies for output: positions, normals [n x 3], curvature kappa-bar, area; borrowed */
 BY_EXTERN PetscErrorCode ProxyGetPoints(Proxy proxy, PetscInt *n, const PetscReal *x[], const PetscReal *normal[], const PetscReal *kappa[], const PetscReal *area[]);
 /* sum over vertices of Gaussian curvature times area (2 pi chi on a closed surface) */

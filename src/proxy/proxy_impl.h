@@ -1,0 +1,127 @@
+/* proxy_impl.h - the inside of a Proxy; only for src/proxy and its tests. */
+#ifndef BY_PROXY_IMPL_H
+#define BY_PROXY_IMPL_H
+
+#include "proxy/proxy.h"
+#include "proxy/proxy_kernel.h"
+#include <petsc/private/petscimpl.h>
+
+/* what the proxies must know of the fluid */
+typedef struct {
+  double   h, dx;          /* support radius, spacing [m]                                                  */
+  int      kernel;         /* SPHKernelType                                                                */
+  double   min[3], max[3]; /* domain [m]: period along the periodic axes                                   */
+  unsigned periodic;       /* bit k = axis k                                                               */
+} ProxyFluid;
+
+/* connectivity of the surface, fixed */
+typedef struct {
+  PetscInt   n_nodes, n_triangles, n_edges, n_patches, n_fans;
+  PetscInt  *triangles;      /* n_triangles x 3, outward                                                   */
+  PetscReal *X;              /* n_nodes x 3 [m], reference positions                                       */
+  PetscInt  *edge_nodes;     /* n_edges x 2                                                                */
+  PetscInt  *edge_triangles; /* n_edges x 2; second is -1 on an open border                                */
+  PetscInt  *edge_side;      /* n_edges x 2: which side (0..2, from corner i to i + 1) of those triangles   */
+  PetscInt  *triangle_edges; /* n_triangles x 3                                                            */
+  PetscBool *edge_sharp;     /* n_edges: dihedral angle beyond feature_angle, or open                      */
+  PetscInt  *patch;          /* n_triangles: smooth part of the surface                                    */
+  PetscBool *patch_open;     /* n_patches: has an open border                                              */
+  PetscBool *patch_sharp;    /* n_patches: has a sharp edge                                                */
+  PetscInt  *fan;            /* n_triangles x 3: vertex fan of each corner (a vertex, once per smooth side) */
+  PetscInt  *fan_start, *fan_corner; /* corners 3 t + i of each fan                                        */
+} ProxySurface;
+
+/* geometry of the surface where it is now */
+typedef struct {
+  PetscReal *x;              /* n_nodes x 3 [m]                                                            */
+  PetscReal *area, *normal;  /* n_triangles [m^2], x 3                                                     */
+  PetscReal *fan_normal;     /* n_fans x 3                                                                 */
+  PetscReal *shape;          /* n_triangles x 6: shape operator [1/m]                                      */
+} ProxyGeometry;
+
+typedef enum { PROXY_VERTEX, PROXY_EDGE, PROXY_FACE } ProxyKind;
+
+/* one sampling of the surface */
+typedef struct {
+  PetscInt   n;
+  PetscInt  *triangle, *nodes;           /* n, n x 3                                                       */
+  PetscReal *weights;                    /* n x 3 barycentric, >= 0, sum 1                                 */
+  PetscReal *kappa;                      /* n, kappa-bar                                                   */
+  int       *kind, *side;                /* ProxyKind; for edges the side of the triangle                  */
+  PetscInt  *part_start, *part_triangle; /* which triangles' area each proxy stands for ...                */
+  PetscReal *part;                       /* ... and which fraction of it                                   */
+  PetscReal *area0, *edge0;              /* triangle areas [m^2], edge lengths [m] when sampled            */
+  PetscReal *x;                          /* n_nodes x 3 [m], where the surface was when sampled            */
+} ProxySampling;
+
+/* cells over the supports: the proxies that may touch a particle in a cell */
+typedef struct {
+  double    lo[3], cell;
+  PetscInt  dims[3];
+  PetscInt *start, *entry; /* entry = proxy*27 + image code                                               */
+  PetscInt  longest;           /* most entries of a cell                                                  */
+  size_t    n_start, n_entry; /* allocated                                                                */
+} ProxyCells;
+
+typedef struct {
+  int dummy;
+} ProxyOps;
+
+struct _p_Proxy {
+  PETSCHEADER(ProxyOps);
+  char          name[BY_NAME_MAX];
+  ProxyParams   params;
+  ProxyFluid    fluid;
+  SPH           sph;
+  PetscBool     setup, has_fluid;
+  PetscReal     factor, inset;  /* calibrated or given: [1], [m]                                           */
+  ProxySurface  surface;
+  ProxyGeometry geometry;
+  ProxySampling sampling;
+  ProxyCells    cells;
+  PetscBool     cells_valid;
+  PetscInt      n_samplings;    /* how often the surface was sampled                                       */
+  PetscInt      capacity;       /* of the arrays by proxy                                                  */
+  ProxyPoint   *points;         /* n                                                                       */
+  PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
+  PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */
+  PetscReal    *node_weight;    /* n_nodes: nodal share of proxy area [m^2]                                */
+  SPHContacts   contacts;
+  void         *chunks;         /* result buffers of proxy_contacts.c                                      */
+  PetscInt      n_chunks, pair_capacity, touched_capacity;
+};
+
+/* proxy_surface.c */
+PetscErrorCode ProxySurfaceBuild(const char key[], PetscReal feature_angle, const ProxyFluid *fluid, PetscInt n_nodes, const PetscReal X[],
+                                 PetscInt n_triangles, const PetscInt triangles[], ProxySurface *surface);
+PetscErrorCode ProxySurfaceDestroy(ProxySurface *surface);
+
+/* proxy_curvature.c */
+PetscErrorCode ProxyGeometryCreate(const ProxySurface *surface, ProxyGeometry *geometry);
+PetscErrorCode ProxyGeometryDestroy(ProxyGeometry *geometry);
+/* everything of `geometry` from its x; shape operators bounded by max_curvature [1/m] */
+void           ProxyGeometryUpdate(const ProxySurface *surface, PetscReal max_curvature, ProxyGeometry *geometry);
+/* Gaussian curvature and mixed area by node; nodes outside the surface get 0 */
+PetscErrorCode ProxyGaussianCurvature(const ProxySurface *surface, const PetscReal x[], PetscReal kappa[], PetscReal area[]);
+/* kappa-bar by node, edge, triangle */
+PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *surface, const ProxyParams *params, PetscReal h, const PetscReal kappa[],
+                                        const PetscReal area[], PetscReal node[], PetscReal edge[], PetscReal triangle[]);
+void           ProxyShapeBound(PetscReal max_curvature, double S[6]);
+
+/* proxy_sample.c */
+PetscErrorCode ProxySample(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyParams *params, const ProxyFluid *fluid,
+                           ProxySampling *sampling);
+PetscErrorCode ProxySamplingDestroy(ProxySampling *sampling);
+
+/* proxy_contacts.c */
+PetscErrorCode ProxyFindContacts(Proxy proxy, PetscInt n, const PetscReal x[], SPHContacts *contacts);
+PetscErrorCode ProxyContactsDestroy(Proxy proxy);
+
+/* proxy_ellipsoid.c */
+/* volumes V_b = factor / sum_k W_b(x_k - x_b) over the proxies of one body (method 4.3, Psi_b = rho0 V_b), into points[].weight */
+PetscErrorCode ProxyEllipsoidVolumes(int kernel, double h, double factor, PetscInt n, ProxyPoint points[]);
+
+/* proxy_fluid.c: the fluid's numbers, for tests without an SPH */
+PetscErrorCode ProxySetFluidScale(Proxy proxy, const ProxyFluid *fluid);
+
+#endif

@@ -1,0 +1,169 @@
+/* proxy_kernel.h - what one proxy does to one fluid particle: the half-space profile (method 4.4) and the paper's ellipsoid
+   (method 4.3). Host and device. r = x_particle - x_proxy [m], n = outward unit normal, S = shape operator [1/m], symmetric
+   (xx, yy, zz, xy, xz, yz) with S n = 0, convex positive; h = support radius [m] of the fluid's kernel. */
+#ifndef BY_PROXY_KERNEL_H
+#define BY_PROXY_KERNEL_H
+
+#include "mat3.h"
+#include "sph/sph_kernel.h"
+
+/* what a proxy loses behind its surface: weights fall as exp(-(z/(0.15 h))^2), so that where two sides of a thin body are in
+   reach the one in front decides, while a particle inside the body still sees the nearest side (the weights are normalised) */
+#define PROXY_BACK_FADE 0.15
+/* the ellipsoid kernel is not normalised: it fades to nothing over this part of h behind the surface */
+#define PROXY_ELLIPSOID_FADE 0.25
+/* in front, weights end over this part of h before z_max; nothing acts beyond z = h anyway */
+#define PROXY_FRONT_FADE 0.5
+
+/* one proxy as the pair formulas see it */
+typedef struct {
+  double x[3];        /* position [m]; of the ellipsoid kernel: inset along -n                                          */
+  double n[3];        /* outward unit normal                                                                            */
+  double S[6];        /* shape operator [1/m]                                                                           */
+  double e[3];        /* ellipsoid: unit tangent of radius a                                                            */
+  double radius[2];   /* half-space: tangential radius h/kappa-bar [m], z_max [m]; ellipsoid: a, b [m] (c = h)          */
+  double weight;      /* half-space: area [m^2]; ellipsoid: volume Psi/rho0 [m^3] with the factor                       */
+  double inset;       /* ellipsoid: depth of x beneath the surface [m]                                                  */
+} ProxyPoint;
+
+/* one pair of the half-space profile: weight w = A_b w_b, profile lambda, height z above the osculating surface */
+typedef struct {
+  double w, grad_w[3];           /* [1], [1/m]   */
+  double lambda, grad_lambda[3]; /* [1], [1/m]   */
+  double z, grad_z[3];           /* [m], [1]     */
+  double cover, grad_cover[3];   /* A w2 without the fades: its sum is 1 inside a patch, 1/2 on a straight border */
+} ProxyPair;
+
+/* Factor s on the boundary volume that puts the wetted surface where the mesh is (method 2: measured with settled columns of
+   the cubic spline at h = 2 dx; half-space profile 1.06, ellipsoid inset by dx/2 0.85; other h/dx: the excess of a lattice's
+   self-weight over the integral shrinks as (dx/h)^2) */
+BY_HD double ProxyFactorHalfSpace(double h_over_dx)
+{
+  return 1.0 + 0.06 * 4.0 / (h_over_dx*h_over_dx);
+}
+BY_HD double ProxyFactorEllipsoid(double h_over_dx)
+{
+  return 1.0 - 0.15 * 4.0 / (h_over_dx*h_over_dx);
+}
+
+/* K(d) = h^-2 int 2 pi t^3 W(sqrt(d^2 + t^2)) dt [1/m], second moment of the kernel in the plane at distance d >= 0 (method
+   4.4). K'(d) = -2 d A(d)/h^2 with A of SPHPlaneDensity, so h K = int_q^1 2 s (h A)(s) ds, polynomial by pieces. */
+BY_HD double ProxyPlaneMoment(int kernel, double d, double h)
+{
+  const double q = d / h, u = 1.0 - q, q2 = q*q, u5 = u*u*u*u*u;
+
+  if (q >= 1.0) return 0.0;
+  if (kernel == SPH_WENDLAND) return u5*u * (7.0 - u * (15.0 - u * (10.875 - u * (8.0/3.0)))) / h;
+  if (q >= 0.5) return u5 * (3.2 - u * (4.8 - u * (64.0/35.0))) / h;
+  return (31.0/140.0 - q2 * (1.4 - q2 * (4.0 - q2 * (8.0 - q * (38.4/7.0))))) / h;
+}
+
+/* cubic spline in two dimensions, radius R: value [1/m^2] and *F = (1/t) dw/dt [1/m^4]; 40/(7 pi R^2) {1 - 6q^2 + 6q^3; 2u^3} */
+BY_HD double ProxyKernel2D(double t, double R, double *F)
+{
+  const double q = t / R, u = 1.0 - q, c = 40.0 / (7.0 * BY_PI * R*R);
+
+  *F = 0.0;
+  if (q >= 1.0) return 0.0;
+  if (q < 0.5) {
+    *F = c / (R*R) * (18.0*q - 12.0);
+    return c * (1.0 - 6.0*q*q*u);
+  }
+  *F = c / (R*R) * (-6.0*u*u/q);
+  return c * 2.0*u*u*u;
+}
+
+/* y = S t for a symmetric S (xx, yy, zz, xy, xz, yz) */
+BY_HD void ProxyShapeTimes(const double S[6], const double t[3], double y[3])
+{
+  y[0] = S[0]*t[0] + S[3]*t[1] + S[4]*t[2];
+  y[1] = S[3]*t[0] + S[1]*t[1] + S[5]*t[2];
+  y[2] = S[4]*t[0] + S[5]*t[1] + S[2]*t[2];
+}
+
+/* smooth step 3 s^2 - 2 s^3 and its slope; 0 below 0, 1 above 1 */
+BY_HD double ProxySmoothStep(double s, double *slope)
+{
+  *slope = 0.0;
+  if (s <= 0.0) return 0.0;
+  if (s >= 1.0) return 1.0;
+  *slope = 6.0*s*(1.0 - s);
+  return s*s*(3.0 - 2.0*s);
+}
+
+/* Half-space profile of one pair (method 4.4): t = r - (n.r) n, z = n.r + 1/2 t.S t, w = A w2(|t|, R) c(z),
+   lambda_H = lambda(z) - 1/2 H h^2 K(z), H = tr S/2; all gradients exact. With S = H (I - n n^T) this is the method's formula; the
+   full S also follows cylinders. Returns 0 when the pair does not touch. */
+BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const double r[3], ProxyPair *pair)
+{
+  const double z0 = Dot3(b->n, r), R = b->radius[0], z_max = b->radius[1], H = 0.5*(b->S[0] + b->S[1] + b->S[2]);
+  const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]}, t2 = Dot3(t, t);
+  double       St[3], F, cut = 1.0, cut_slope = 0.0, w, z, d, slope;
+
+  if (t2 >= R*R) return 0;
+  ProxyShapeTimes(b->S, t, St);
+  z = z0 + 0.5*Dot3(t, St);
+  if (z <= -h || z >= z_max) return 0;
+
+  // weight in the tangent plane, faded behind the surface and far in front of it
+  w = ProxyKernel2D(sqrt(t2), R, &F);
+  if (z < 0.0) {
+    const double a = z / (PROXY_BACK_FADE*h);
+    cut       = exp(-a*a);
+    cut_slope = -2.0*a / (PROXY_BACK_FADE*h) * cut;
+  } else if (z > z_max - PROXY_FRONT_FADE*h) {
+    cut       = ProxySmoothStep((z_max - z) / (PROXY_FRONT_FADE*h), &slope);
+    cut_slope = -slope / (PROXY_FRONT_FADE*h);
+  }
+
+  // profile above the osculating surface
+  d            = z < 0.0 ? -z : z;
+  pair->z      = z;
+  pair->w      = b->weight * w * cut;
+  pair->cover  = b->weight * w;
+  pair->lambda = SPHHalfSpace(kernel, z, h) - 0.5*H*h*h*ProxyPlaneMoment(kernel, d, h);
+  slope        = -SPHPlaneDensity(kernel, d, h) * (1.0 - H*z);
+  for (int k = 0; k < 3; k++) {
+    pair->grad_z[k]      = b->n[k] + St[k];
+    pair->grad_lambda[k] = slope * pair->grad_z[k];
+    pair->grad_cover[k]  = b->weight * F*t[k];
+    pair->grad_w[k]      = b->weight * (F*cut*t[k] + w*cut_slope*pair->grad_z[k]);
+  }
+  return 1;
+}
+
+/* Ellipsoid kernel of one proxy (method 4.3) without volume and cut: h^3/(a b c) W(|G r|, h), G = diag(h/a, h/b, h/c), c = h, in the
+   frame (e, n x e, n); gradient with respect to the particle when grad is not NULL. */
+BY_HD double ProxyEllipsoidW(int kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
+{
+  double       m[3];
+  Cross3(b->n, b->e, m);
+  const double ga = h / b->radius[0], gb = h / b->radius[1];
+  const double x = ga*Dot3(b->e, r), y = gb*Dot3(m, r), z = Dot3(b->n, r), q2 = x*x + y*y + z*z;
+
+  if (q2 >= h*h) return 0.0;
+  const double d = sqrt(q2), scale = ga*gb;
+  if (grad) {
+    const double F = scale * SPHKernelF(kernel, d, h);
+    for (int k = 0; k < 3; k++) grad[k] = F * (ga*x*b->e[k] + gb*y*m[k] + z*b->n[k]);
+  }
+  return scale * SPHKernelW(kernel, d, h);
+}
+
+/* phi of one ellipsoid pair: V_b W_b(r) with a smooth end behind the surface: 1 for height z >= 0, 0 at z = -h/4 (one-sidedness) */
+BY_HD double ProxyPairEllipsoid(int kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
+{
+  const double z0 = Dot3(b->n, r);
+  const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]};
+  double       St[3], W, cut, slope, z;
+
+  W = ProxyEllipsoidW(kernel, h, b, r, grad);
+  if (W == 0.0) return 0.0;
+  ProxyShapeTimes(b->S, t, St);
+  z   = z0 - b->inset + 0.5*Dot3(t, St);
+  cut = ProxySmoothStep(1.0 + z / (PROXY_ELLIPSOID_FADE*h), &slope);
+  for (int k = 0; k < 3; k++) grad[k] = b->weight * (cut*grad[k] + W * slope/(PROXY_ELLIPSOID_FADE*h) * (b->n[k] + St[k]));
+  return b->weight * cut * W;
+}
+
+#endif
