@@ -44,10 +44,10 @@ PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *ene
   PetscFunctionBegin;
   part = w->partial; /* four numbers fit: every block has at least four slots of three */
   if (w->anp && energy) {
-#pragma omp parallel
+#pragma omp parallel num_threads(TLEDThreads_OpenMP(w))
     TLEDNodalVolumes_OpenMP(w, u);
   }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(TLEDThreads_OpenMP(w))
   for (int block = 0; block < b->n_blocks; block++) {
     double q[4] = {0.0, 0.0, PETSC_MAX_REAL, 0.0}, H[9], G[9];
     for (int l = TLED_LANES*b->pack_offset[block]; l < TLED_LANES*b->pack_offset[block + 1]; l++) {

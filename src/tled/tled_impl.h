@@ -10,6 +10,7 @@
 #define TLED_BLOCK_TETS      256 /* elements of a block at most: its gradients and nodes stay in a core's L1/L2 cache */
 #define TLED_BLOCK_NODES     256 /* nodes of a block at most                                                       */
 #define TLED_CHUNK           128 /* nodes whose contributions to a sum are added first, for any number of threads  */
+#define TLED_THREAD_BLOCKS   4   /* blocks that make one more thread worth its barriers                              */
 #define TLED_MESSAGE         512 /* characters of a breakdown message                                              */
 
 /* A named physical group of the mesh file. */
@@ -131,6 +132,7 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
 PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *blocks);
 PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);
 /* tled_openmp.c: called by all threads of a parallel region, or outside one */
+int  TLEDThreads_OpenMP(const TLEDLoops *loops); /* threads that are worth while */
 void TLEDElementForces_OpenMP(const TLEDLoops *loops, const double u[]);
 void TLEDGatherForces_OpenMP(const TLEDLoops *loops, double f[]);
 void TLEDNodalVolumes_OpenMP(const TLEDLoops *loops, const double u[]); /* fills loops->nodal (anp) */

@@ -3,6 +3,7 @@
    Every function may be called by all threads of a parallel region (the work is shared, with a barrier at the end) or outside one. */
 #include "tled/tled_impl.h"
 #include "tled/tled_element.h"
+#include <omp.h>
 
 #define L TLED_LANES
 
@@ -282,6 +283,14 @@ static void PassAverage(const TLEDLoops *w, const double u[], int forces)
     }
     StoreBlock(b, block, &s, w->partial);
   }
+}
+
+/* how many threads share the work: one for every TLED_THREAD_BLOCKS blocks; results do not depend on it */
+int TLEDThreads_OpenMP(const TLEDLoops *w)
+{
+  const int wanted = w->blocks->n_blocks / TLED_THREAD_BLOCKS, most = omp_get_max_threads();
+
+  return wanted < 1 ? 1 : wanted < most ? wanted : most;
 }
 
 /* Forces of all elements at displacement u [m] into the blocks' partial sums, and the blocks' status. */

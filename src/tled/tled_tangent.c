@@ -160,7 +160,7 @@ PetscErrorCode TLEDTangent(TLED tled, Vec u, Mat *K)
   if (!*K) PetscCall(CreateMatrix(tled, K));
   PetscCall(VecGetArrayRead(u, &array));
   if (tled->loops.anp) {
-#pragma omp parallel
+#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
     TLEDNodalVolumes_OpenMP(&tled->loops, array);
   }
   FillValues(tled, array);

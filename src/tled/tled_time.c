@@ -11,7 +11,7 @@
 PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[])
 {
   PetscFunctionBegin;
-#pragma omp parallel
+#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
   {
     TLEDElementForces_OpenMP(&tled->loops, u);
     TLEDGatherForces_OpenMP(&tled->loops, f);
@@ -100,7 +100,7 @@ static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
 {
   PetscInt done = m;
 
-#pragma omp parallel
+#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
   {
     PetscInt s;
     NodePass(tled, w, 0, 1);
