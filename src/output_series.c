@@ -143,7 +143,7 @@ static herr_t VisitField(hid_t group, const char name[], const H5L_info_t *info,
 static PetscErrorCode ReadTables(Series series, OutputFile *file, PetscReal time)
 {
   const SeriesLayout *layout = &series_layouts[series->kind];
-  PetscInt64          n, n_parts, *buffer;
+  PetscInt64          n, n_parts, points, *buffer;
   PetscReal          *times;
   PetscInt64          cells = 0, ids = 0;
 
@@ -151,6 +151,8 @@ static PetscErrorCode ReadTables(Series series, OutputFile *file, PetscReal time
   OutputFileGetSize(file, "/VTKHDF/Steps/Values", &n, NULL, NULL);
   OutputFileGetSize(file, "/VTKHDF/NumberOfPoints", &n_parts, NULL, NULL);
   if (n < 0 || n_parts < 0) OutputFileFail(file, "not a series of this program");
+  OutputFileGetSize(file, "/VTKHDF/Points", &points, NULL, NULL);
+  series->has_sets = points >= 0 ? PETSC_TRUE : PETSC_FALSE;
   if (file->failed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Grow((void **)&series->steps, &series->step_capacity, (size_t)n, sizeof(Step)));
   PetscCall(Grow((void **)&series->parts, &series->part_capacity, (size_t)n_parts, sizeof(Part)));
@@ -216,7 +218,7 @@ static void Shrink(Series series, OutputFile *file)
     OutputFileResize(file, In(Category(series, c), "Connectivity").text, (size_t)(used ? cells * layout->nodes : 0));
     if (series->kind == SERIES_TETRAHEDRA) OutputFileResize(file, "/VTKHDF/Types", (size_t)cells);
   }
-  if (series->n_fields) OutputFileResize(file, "/VTKHDF/Points", (size_t)points);
+  if (series->has_sets) OutputFileResize(file, "/VTKHDF/Points", (size_t)points);
   for (PetscInt f = 0; f < series->n_fields; f++) {
     OutputFileResize(file, In("/VTKHDF/PointData", series->fields[f].name).text, (size_t)points);
     OutputFileResize(file, In("/VTKHDF/Steps/PointDataOffsets", series->fields[f].name).text, series->n_steps);
@@ -301,7 +303,7 @@ PetscErrorCode SeriesCreate(const char directory[], const char name[], SeriesKin
 PetscErrorCode SeriesSetDoublePrecision(Series series, PetscBool flag)
 {
   PetscFunctionBegin;
-  PetscCheck(!series->active || series->n_fields == 0 || series->n_steps == 0 || flag == series->double_precision, PETSC_COMM_SELF, PETSC_ERR_ORDER, "%s has steps already", series->path);
+  PetscCheck(!series->active || !series->has_sets || flag == series->double_precision, PETSC_COMM_SELF, PETSC_ERR_ORDER, "%s has steps already", series->path);
   series->double_precision = flag;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -399,6 +401,7 @@ static PetscErrorCode CreateSets(Series series, OutputFile *file, PetscInt n, Pe
   const size_t        n_cells = PetscMax((size_t)(series->kind == SERIES_POINTS ? n : series->n_cells), 64);
 
   PetscFunctionBegin;
+  series->has_sets = PETSC_TRUE;
   for (int c = 0; c < CategoryCount(series); c++) {
     const PetscBool used = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
 
@@ -496,7 +499,7 @@ PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const Pets
   PetscCall(Grow((void **)&series->steps, &series->step_capacity, series->n_steps + 1, sizeof(Step)));
   OutputFileOpen(series->path, OUTPUT_CHANGE, StepBytes(series, n, n_fields, fields), PETSC_FALSE, &file);
   PetscCall(IsLastPart(series, &file, n, &same));
-  if (series->n_fields == 0) PetscCall(CreateSets(series, &file, n, n_fields, fields));
+  if (!series->has_sets) PetscCall(CreateSets(series, &file, n, n_fields, fields));
   PetscCall(CheckFields(series, n_fields, fields));
   CountRows(series, &points, &cells);
   if (!same) PetscCall(AddPart(series, &file, n));

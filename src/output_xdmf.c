@@ -1,5 +1,5 @@
-/* output_xdmf.c - the .xmf beside a .vtkhdf, for viewers that do not read temporal VTKHDF (ParaView before 5.12): a temporal
-   collection of grids whose arrays are pieces (hyperslabs) of the same data sets. Written anew after every step and renamed. */
+/* output_xdmf.c - the .xmf beside a .vtkhdf, for viewers that do not read temporal VTKHDF (ParaView before 5.12; of its readers
+   choose "XDMF Reader", those called Xdmf3 do not know pieces of data sets): a temporal collection of grids whose arrays are pieces (hyperslabs) of the same data sets. Written anew after every step and renamed. */
 #include "output_series.h"
 #include <stdlib.h>
 #include <string.h>

@@ -191,6 +191,25 @@ static void a_step_without_particles_is_stored(void **state)
   assert_int_equal(CountRows("empty.vtkhdf", "/VTKHDF/Points"), 3);
 }
 
+static void a_surface_without_fields_can_be_continued(void **state)
+{
+  static const PetscReal x[12]   = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  static const PetscInt  cells[6] = {0, 1, 2, 1, 2, 3};
+  Series                 series;
+
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    assert_petsc(SeriesCreate(directory, "cylinder", SERIES_TRIANGLES, "", i > 0, 1.0 * i, &series));
+    assert_petsc(SeriesSetCells(series, 2, cells));
+    assert_petsc(SeriesWrite(series, i, 4, x, 0, NULL));
+    assert_petsc(SeriesWrite(series, i + 0.5, 4, x, 0, NULL));
+    assert_petsc(SeriesDestroy(&series));
+  }
+  assert_int_equal(CountRows("cylinder.vtkhdf", "/VTKHDF/Steps/Values"), 6);
+  assert_int_equal(CountRows("cylinder.vtkhdf", "/VTKHDF/Polygons/Connectivity"), 6);
+  assert_int_equal(CountRows("cylinder.vtkhdf", "/VTKHDF/Lines/Offsets"), 1);
+}
+
 /* run `body` with stderr into a file; returns its text */
 static const char *Caught(void (*body)(void *), void *context)
 {
@@ -433,6 +452,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(a_damaged_series_is_refused_and_left_alone),
     cmocka_unit_test(a_series_resumed_before_its_first_step_begins_anew),
     cmocka_unit_test(a_step_without_particles_is_stored),
+    cmocka_unit_test(a_surface_without_fields_can_be_continued),
     cmocka_unit_test(a_resumed_series_is_the_uninterrupted_one),
     cmocka_unit_test(particles_come_back_at_every_time),
     cmocka_unit_test(topology_of_a_body_is_stored_once),
