@@ -3,6 +3,7 @@
 #include <petscviewer.h>
 #include <stdlib.h>
 
+#include "mat3.h"
 #include "sph_impl.h"
 
 PetscLogEvent       SPH_Neighbors, SPH_Contacts, SPH_Predict, SPH_Pressure, SPH_Apply, SPH_Forces, SPH_Advance;
@@ -124,16 +125,19 @@ PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sum of dx^3 W over the points of a full cubic lattice of spacing dx around one of them */
-static PetscReal LatticeSum(int kernel, PetscReal dx, PetscReal h)
+/* sums of W and of |grad W|^2 over the points of a full cubic lattice of spacing dx around one of them */
+static void LatticeSums(int kernel, PetscReal dx, PetscReal h, PetscReal *W, PetscReal *grad2)
 {
-  const int n   = (int)ceil(h / dx);
-  PetscReal sum = 0.0;
+  const int n = (int)ceil(h / dx);
 
+  *W = *grad2 = 0.0;
   for (int k = -n; k <= n; k++)
     for (int j = -n; j <= n; j++)
-      for (int i = -n; i <= n; i++) sum += SPHKernelW(kernel, dx * sqrt((double)(i * i + j * j + k * k)), h);
-  return sum * dx * dx * dx;
+      for (int i = -n; i <= n; i++) {
+        const PetscReal r = dx * sqrt((double)(i * i + j * j + k * k));
+        *W += SPHKernelW(kernel, r, h);
+        *grad2 += PetscSqr(r * SPHKernelF(kernel, r, h));
+      }
 }
 
 /* s of method 2, by which still water stands where a planar wall is (docs/verification/fluid-slice.md) */
@@ -182,7 +186,8 @@ static PetscErrorCode AllocateState(SPH sph)
 PetscErrorCode SPHSetUp(SPH sph)
 {
   const SPHParams *par = &sph->params;
-  const PetscReal  g   = sqrt(PetscSqr(sph->gravity[0]) + PetscSqr(sph->gravity[1]) + PetscSqr(sph->gravity[2]));
+  const PetscReal  g   = Norm3(sph->gravity);
+  PetscReal        W, grad2;
 
   PetscFunctionBegin;
   if (sph->setup) PetscFunctionReturn(PETSC_SUCCESS);
@@ -194,10 +199,13 @@ PetscErrorCode SPHSetUp(SPH sph)
       PetscFunctionReturn(InputError("domain.periodic", "a periodic axis must be at least two supports (%g m) long", (double)(2.0 * sph->h)));
     }
   }
-  sph->mass        = par->density * par->spacing * par->spacing * par->spacing / LatticeSum(par->kernel, par->spacing, sph->h);
+  LatticeSums(par->kernel, par->spacing, sph->h, &W, &grad2);
+  sph->mass        = par->density / W;
   sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : CalibratedWallFactor(par->kernel, par->support);
   sph->relax_time  = par->relax_time;
   if (sph->relax_time == 0.0 && par->solver == SPH_SOLVER_PCG && g > 0) sph->relax_time = 0.5 * sqrt(sph->h / g);
+  sph->filter_norm = SPHFilterNorm(grad2 * sph->mass * sph->mass);
+  sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
 
   sph->table          = par->precision == SPH_PRECISION_DOUBLE ? &SPHLoopsOpenMPDouble : &SPHLoopsOpenMPSingle;
   sph->loops.n        = (int)sph->n;

@@ -35,7 +35,9 @@ struct _p_SPH {
   PetscReal gravity[3];              /* [m/s^2]                                          */
 
   /* derived at SetUp */
-  PetscReal h, mass, wall_factor, relax_time; /* [m], [kg], [1], [s] (0: correct all at once) */
+  PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
+  PetscReal relax_time;              /* [s]; 0: correct all at once                      */
+  PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
   PetscInt   n, allocated;
@@ -101,6 +103,7 @@ static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], P
 
 /* sph_viscosity.c */
 PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);
+PETSC_INTERN PetscErrorCode SPHFilterPredict_Internal(SPH sph, PetscReal dt);
 
 /* sph_pressure.c, sph_mprgp.c: one application of the scaled operator, out = S (dt^2 D D^T + response) S y */
 typedef struct {

@@ -45,6 +45,7 @@ typedef struct {
   void (*Rate)(const SPHLoops *l, double factor, const double scale[], double rate[]); /* factor scale D vector          */
   void (*Diagonal)(const SPHLoops *l, double diagonal[]);                        /* of D D^T                             */
   void (*Viscosity)(const SPHLoops *l, double mu_over_rho2, double a[]);         /* a += viscous acceleration of vector  */
+  void (*Filter)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum [(v_i - v_j) . g] g of vector */
 } SPHLoopTable;
 
 extern const SPHLoopTable SPHLoopsOpenMPSingle, SPHLoopsOpenMPDouble;

@@ -279,5 +279,29 @@ static void Viscosity(const SPHLoops *l, double mu_over_rho2, double a[])
   }
 }
 
+/* a_i += factor sum_j [ (v_i - v_j) . g ] g, g = m grad W_ij */
+static void Filter(const SPHLoops *l, double factor, double a[])
+{
+  const real *v = (const real *)l->vector, *gradient = (const real *)l->gradient;
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++) {
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+      const int  *list = l->neighbour + l->start[i], n = l->count[i];
+      const real *g = gradient + 3 * (size_t)l->start[i], *vi = v + 4 * (size_t)i;
+      Vec4        s0 = {0}, s1 = {0};
+      int         k = 0;
+
+      for (; k + 2 <= n; k += 2, g += 6) {
+        s0 += SPHPairRate(vi, v + 4 * (size_t)list[k], g) * Load4(g);
+        s1 += SPHPairRate(vi, v + 4 * (size_t)list[k + 1], g + 3) * Load4(g + 3);
+      }
+      if (k < n) s0 += SPHPairRate(vi, v + 4 * (size_t)list[k], g) * Load4(g);
+      s0 += s1;
+      for (int q = 0; q < 3; q++) a[3*i + q] += factor * (double)s0[q];
+    }
+  }
+}
+
 const SPHLoopTable SPH_TABLE = {SPH_LABEL, (int)sizeof(real), Pairs,     SetWalls, SetPressure, SetVelocity, Acceleration,
-                                GetVector, Rate,              Diagonal, Viscosity};
+                                GetVector, Rate,              Diagonal, Viscosity, Filter};

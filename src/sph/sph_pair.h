@@ -27,6 +27,12 @@ BY_HD SPH_REAL SPHPairViscosity(SPH_REAL mu_over_rho2, SPH_REAL v_dot_x, SPH_REA
   return (SPH_REAL)10 * mu_over_rho2 * v_dot_x / (r2 + (SPH_REAL)0.01*h*h);
 }
 
+/* noise filter: (L v)_i = - sum_j [ (v_i - v_j) . g ] g / N, g = m grad W_ij, damps the relative motion of neighbours along their line;
+   applied twice, -rate L L v, it acts on a wave of length l as (1/l)^4: on particle noise and hardly on the flow. L is symmetric, negative
+   and central, so that momentum and angular momentum stay and energy falls. SPHPairRate() gives the bracket.
+   N = 2/3 sum |g|^2 of a full cubic lattice, there the largest eigenvalue. */
+BY_HD SPH_REAL SPHFilterNorm(SPH_REAL sum_of_squares) { return (SPH_REAL)(2.0/3.0) * sum_of_squares; }
+
 /* friction of a no-slip wall, a_i = k (v_wall - v_i), k = 2 nu |grad phi| / d [1/s]: the integral over the wall's half-space of
    2 nu (v_i - v) (dW/dr)/r with v continued linearly through its value on the wall, v_i - v(z) = (v_i - v_wall) z/d, because
    int z (dW/dr)/r dV = -A(d) = lambda'(d). d [m] is kept off zero by the caller. */

@@ -1,9 +1,8 @@
 /* sph_time.c - the time step, what happens before pressure, and the integrator (method 1.3). */
 #include <math.h>
 
+#include "mat3.h"
 #include "sph_impl.h"
-
-static PetscReal Norm(const PetscReal a[3]) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
 /* largest |v| of the particles and of the walls [m/s] */
 static PetscReal LargestSpeed(SPH sph)
@@ -39,8 +38,8 @@ static PetscReal LargestSpeed(SPH sph)
 PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
 {
   const SPHParams *par = &sph->params;
-  const PetscReal  g = Norm(sph->gravity), nu = par->viscosity / par->density;
-  const PetscReal  speed = PetscMax(LargestSpeed(sph), Norm(par->mean_velocity));
+  const PetscReal  g = Norm3(sph->gravity), nu = par->viscosity / par->density;
+  const PetscReal  speed = PetscMax(LargestSpeed(sph), Norm3(par->mean_velocity));
   PetscReal        step  = 0.05 * sqrt(sph->h / (g > 0 ? g : 1.0));
 
   PetscFunctionBegin;
@@ -65,7 +64,7 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
 static void ControlMeanVelocity(SPH sph, PetscReal dt)
 {
   const int        n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  const PetscReal *target = sph->params.mean_velocity, T = 5.0 * sph->h / Norm(target);
+  const PetscReal *target = sph->params.mean_velocity, T = 5.0 * sph->h / Norm3(target);
   PetscReal        mean[3];
 
 #pragma omp parallel for schedule(static)
@@ -100,7 +99,7 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Predict, sph, 0, 0, 0));
-  if (Norm(sph->params.mean_velocity) > 0) ControlMeanVelocity(sph, dt);
+  if (Norm3(sph->params.mean_velocity) > 0) ControlMeanVelocity(sph, dt);
   for (int k = 0; k < 3; k++) a[k] = sph->gravity[k] + sph->body_force[k];
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
@@ -108,6 +107,7 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
     for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = sph->v[3 * i + k] + dt * a[k];
   }
   if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
+  if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
   sph->table->SetVelocity(&sph->loops, sph->v_star);
   sph->table->Rate(&sph->loops, 1.0, NULL, sph->rate);
   PetscCall(PetscLogEventEnd(SPH_Predict, sph, 0, 0, 0));

@@ -1,5 +1,20 @@
-/* sph_viscosity.c - viscosity between particles, explicit, and the friction of no-slip walls, implicit (method 1). */
+/* sph_viscosity.c - viscosity between particles, explicit, and the friction of no-slip walls, implicit (method 1); the noise filter. */
 #include "sph_impl.h"
+
+/* v* -= dt rate L L v, the noise filter of sph_pair.h */
+PetscErrorCode SPHFilterPredict_Internal(SPH sph, PetscReal dt)
+{
+  const int       n    = (int)sph->n;
+  const PetscReal rate = PetscMin(sph->filter_rate, 0.25 / dt); // explicit: stable below 2/dt, monotone below 1/dt
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(sph->accel, 3 * n));
+  sph->table->SetVelocity(&sph->loops, sph->v);
+  sph->table->Filter(&sph->loops, -1.0 / sph->filter_norm, sph->accel);
+  sph->table->SetVelocity(&sph->loops, sph->accel);
+  sph->table->Filter(&sph->loops, dt * rate / sph->filter_norm, sph->v_star);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* v* += dt (viscous acceleration of v), then friction with every wall at once, implicitly, so that a particle close to a wall
    takes the wall's velocity instead of overshooting it:  v* = (v* + dt sum_k k_k v_k)/(1 + dt sum_k k_k) */
