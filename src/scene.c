@@ -225,15 +225,15 @@ PetscErrorCode SceneWrite(Scene scene, const char path[])
 /* Options that pass through to PETSc and that nothing has asked for. */
 PetscErrorCode SceneReportUnused(Scene scene)
 {
-  char      name[PETSC_MAX_PATH_LEN + 1];
   PetscBool used;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < scene->n_overrides; i++) {
     if (scene->overrides[i].used) continue;
-    PetscCall(PetscSNPrintf(name, sizeof name, "-%s", scene->overrides[i].name));
-    PetscCall(PetscOptionsUsed(NULL, name, &used));
-    if (!used && !PetscGlobalRank) fprintf(stderr, "warning: nothing in this run uses the option %s\n", name);
+
+    /* PetscOptionsUsed compares with names that have lost their dash */
+    PetscCall(PetscOptionsUsed(NULL, scene->overrides[i].name, &used));
+    if (!used && !PetscGlobalRank) fprintf(stderr, "warning: nothing in this run uses the option -%s\n", scene->overrides[i].name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

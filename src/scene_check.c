@@ -520,7 +520,7 @@ PetscErrorCode SceneToOptions(Scene scene)
   for (PetscInt i = 0; i < scene->n_overrides; i++) {
     if (scene->overrides[i].used) continue;
     PetscCall(PetscSNPrintf(option, sizeof option, "-%s", scene->overrides[i].name));
-    PetscCall(PetscOptionsUsed(NULL, option, &was_used));
+    PetscCall(PetscOptionsUsed(NULL, option + 1, &was_used));
     PetscCall(PetscOptionsSetValue(NULL, option, scene->overrides[i].value));
     if (was_used) PetscCall(PetscOptionsHasName(NULL, NULL, option, &was_used));
   }
