@@ -8,7 +8,7 @@
 #define ALIGNMENT 64
 
 #if defined(BYSSUS_HAVE_CUDA)
-  #include <cuda_runtime_api.h>
+#include <cuda_runtime_api.h>
 
 static PetscErrorCode CheckCUDA(cudaError_t status, const char what[])
 {
@@ -89,11 +89,12 @@ PetscErrorCode ArrayCreate(size_t element, size_t n, Array *array)
 
 PetscErrorCode ArrayResize(Array *array, size_t n, PetscBool keep)
 {
-  const size_t old   = array->n * array->element, grown = array->capacity + array->capacity / 2;
+  const size_t old = array->n * array->element, grown = array->capacity + array->capacity / 2;
   void        *moved = NULL;
 
   PetscFunctionBegin;
-  PetscCheck(n <= SIZE_MAX / 2 / array->element, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%zu elements of %zu bytes", n, array->element);
+  PetscCheck(n <= SIZE_MAX / 2 / array->element, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%zu elements of %zu bytes", n,
+             array->element);
   if (!keep) array->host_valid = array->device_valid = 0;
   if (n > array->capacity) {
     const size_t capacity = PetscMax(n, grown);
@@ -160,7 +161,8 @@ static PetscErrorCode UpdateDevice(Array *array)
 static PetscErrorCode CheckWritten(const Array *array)
 {
   PetscFunctionBegin;
-  PetscCheck(array->host_valid || array->device_valid || !array->n, PETSC_COMM_SELF, PETSC_ERR_ORDER, "array read before it was written");
+  PetscCheck(array->host_valid || array->device_valid || !array->n, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+             "array read before it was written");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,7 +171,7 @@ PetscErrorCode ArrayHostRead(Array *array, const void *p)
   PetscFunctionBegin;
   PetscCall(CheckWritten(array));
   PetscCall(UpdateHost(array));
-  array->host_valid  = 1;
+  array->host_valid = 1;
   *(const void **)p = array->host;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -200,7 +202,7 @@ PetscErrorCode ArrayDeviceRead(Array *array, const void *p)
   PetscCall(CheckWritten(array));
   PetscCall(UpdateDevice(array));
   array->device_valid = 1;
-  *(const void **)p  = array->device;
+  *(const void **)p   = array->device;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,7 +9,7 @@
 #include <yaml.h>
 
 #if defined(BYSSUS_HAVE_CUDA)
-  #include <cuda_runtime_api.h>
+#include <cuda_runtime_api.h>
 #endif
 
 PetscErrorCode BackendGetThreads(PetscInt *threads)
@@ -58,8 +58,10 @@ static PetscErrorCode ViewLibraries(PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(PetscGetVersionNumber(&major, &minor, &subminor, NULL));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "PETSc           %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT "\n", major, minor, subminor));
-  PetscCheck(H5get_libversion(&h5_major, &h5_minor, &h5_release) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 does not tell its version");
+  PetscCall(PetscViewerASCIIPrintf(viewer, "PETSc           %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT "\n", major, minor,
+                                   subminor));
+  PetscCheck(H5get_libversion(&h5_major, &h5_minor, &h5_release) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "HDF5 does not tell its version");
   PetscCall(PetscViewerASCIIPrintf(viewer, "HDF5            %u.%u.%u\n", h5_major, h5_minor, h5_release));
   PetscCall(PetscViewerASCIIPrintf(viewer, "METIS           %d.%d.%d\n", METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR));
   PetscCall(PetscViewerASCIIPrintf(viewer, "gmsh            %s\n", GMSH_API_VERSION));

@@ -62,7 +62,9 @@ PetscInt KeyDistance(const char a[], const char b[])
       const PetscInt shorter = PetscMin(above[j], row[j - 1]) + 1;
 
       row[j] = PetscMin(shorter, above[j - 1] + (c_a != c_b));
-      if (i > 1 && j > 1 && c_a == tolower((unsigned char)b[j - 2]) && c_b == tolower((unsigned char)a[i - 2])) row[j] = PetscMin(row[j], oldest[j - 2] + 1);
+      if (i > 1 && j > 1 && c_a == tolower((unsigned char)b[j - 2]) && c_b == tolower((unsigned char)a[i - 2])) {
+        row[j] = PetscMin(row[j], oldest[j - 2] + 1);
+      }
     }
   }
   return row[n_b];
@@ -89,6 +91,8 @@ static int Append(char text[], size_t n, const char format[], ...)
   va_end(arguments);
   return length;
 }
+
+static PetscBool HasUnit(const Key *key) { return (PetscBool)(key->unit && key->unit[0] && strcmp(key->unit, "1")); }
 
 static PetscBool HasRange(const Key *key) { return (PetscBool)(key->lo < key->hi); }
 
@@ -123,7 +127,7 @@ PetscErrorCode KeyDescribe(const Key *key, char text[], size_t n)
   if (key->type == KEY_REAL || key->type == KEY_INT || key->type == KEY_VEC3) {
     if (key->type == KEY_VEC3 && HasRange(key) && (key->lo > -UNBOUNDED || key->hi < UNBOUNDED)) Append(text, n, ", each");
     AppendRange(key, text, n);
-    if (key->unit && key->unit[0] && strcmp(key->unit, "1")) Append(text, n, "%s [%s]", key->type == KEY_VEC3 ? " in" : "", key->unit);
+    if (HasUnit(key)) Append(text, n, "%s [%s]", key->type == KEY_VEC3 ? " in" : "", key->unit);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -199,7 +203,8 @@ static PetscBool RefuseChoice(const Key *key, const char word[], char why[], siz
   if (key->type == KEY_NAMES) snprintf(what, sizeof what, "has the unknown word %.*s", BY_NAME_MAX, word);
   (void)Refuse(key, what, why, n_why);
   for (PetscInt i = 0; key->choices[i]; i++) {
-    if (KeyIsNear(word, key->choices[i]) && (!nearest || KeyDistance(word, key->choices[i]) < KeyDistance(word, nearest))) nearest = key->choices[i];
+    const char *choice = key->choices[i];
+    if (KeyIsNear(word, choice) && (!nearest || KeyDistance(word, choice) < KeyDistance(word, nearest))) nearest = choice;
   }
   if (nearest) Append(why, n_why, "\ndid you mean %s?", nearest);
   return PETSC_FALSE;
@@ -310,7 +315,8 @@ PetscErrorCode KeysSetDefaults(const Key keys[], void *params)
   for (const Key *key = keys; key->name; key++) {
     memset(&value, 0, sizeof value);
     if (key->def && key->def[0]) {
-      PetscCheck(Parse(key, key->def, &value, why, sizeof why), PETSC_COMM_SELF, PETSC_ERR_PLIB, "default %s of %s %s", key->def, key->name, why);
+      PetscCheck(Parse(key, key->def, &value, why, sizeof why), PETSC_COMM_SELF, PETSC_ERR_PLIB, "default %s of %s %s", key->def,
+                 key->name, why);
     }
     memcpy((char *)params + key->offset, &value, ValueSize(key->type));
   }
@@ -331,7 +337,8 @@ PetscErrorCode KeysSetFromOptions(const Key keys[], const char prefix[], void *p
 
     /* an option without a value switches something on */
     if (!text[0] && key->type == KEY_BOOL) strcpy(text, "true");
-    PetscCheck(Parse(key, text, &value, why, sizeof why), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "-%s%s = %s %s", prefix ? prefix : "", key->name, text, why);
+    PetscCheck(Parse(key, text, &value, why, sizeof why), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "-%s%s = %s %s",
+               prefix ? prefix : "", key->name, text, why);
     memcpy((char *)params + key->offset, &value, ValueSize(key->type));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -369,7 +376,7 @@ PetscErrorCode KeysView(const Key keys[], const void *params, PetscViewer viewer
     FormatValue(key, (const char *)params + key->offset, text, sizeof text);
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s = %s", key->name, text[0] ? text : "(none)"));
     PetscCall(PetscViewerASCIIUseTabs(viewer, PETSC_FALSE));
-    PetscCall(PetscViewerASCIIPrintf(viewer, key->unit && key->unit[0] && strcmp(key->unit, "1") ? " [%s]\n" : "\n", key->unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer, HasUnit(key) ? " [%s]\n" : "\n", key->unit));
     PetscCall(PetscViewerASCIIUseTabs(viewer, PETSC_TRUE));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

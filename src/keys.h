@@ -14,7 +14,8 @@ typedef enum {
   KEY_BOOL,   /* PetscBool                                                        */
   KEY_VEC3,   /* PetscReal[3]                                                     */
   KEY_STRING, /* char[PETSC_MAX_PATH_LEN], a free string or an output path        */
-  KEY_FILE,   /* char[PETSC_MAX_PATH_LEN], an existing file, relative to the scene file (on the command line: to the working directory) */
+  KEY_FILE,   /* char[PETSC_MAX_PATH_LEN], an existing file; relative to the scene file, or to the
+                 working directory when it comes from the command line                         */
   KEY_NAMES,  /* Names, a list of free names                                      */
   KEY_CHOICE  /* int (an enum), one word of a list                                */
 } KeyType;
@@ -58,7 +59,8 @@ BY_EXTERN PetscErrorCode KeyCheck(const Key *key, const char value[], char why[]
 /* What may be written for a key, as in "a finite number > 0 [Pa s]". */
 BY_EXTERN PetscErrorCode KeyDescribe(const Key *key, char text[], size_t n);
 
-/* Edit distance of two words without regard to case (a swap of neighbours is one edit), and whether it is small enough to ask "did you mean". */
+/* Edit distance of two words without regard to case (a swap of neighbours is one edit), and whether it is small enough to ask
+   "did you mean". */
 BY_EXTERN PetscInt  KeyDistance(const char a[], const char b[]);
 BY_EXTERN PetscBool KeyIsNear(const char word[], const char known[]);
 

@@ -28,7 +28,8 @@ static PetscErrorCode TakeResume(int *argc, char *argv[], const char **directory
   *directory = NULL;
   for (int i = 1; i < *argc; i++) {
     if (strcmp(argv[i], "-resume")) continue;
-    if (i + 1 == *argc || argv[i + 1][0] == '-') return InputError("resume", "names no directory\nexpected -resume DIR, the directory of an earlier run");
+    if (i + 1 == *argc || argv[i + 1][0] == '-')
+      return InputError("resume", "names no directory\nexpected -resume DIR, the directory of an earlier run");
     *directory = argv[i + 1];
     *argc -= 2;
     for (int k = i; k < *argc; k++) argv[k] = argv[k + 2];
@@ -51,7 +52,8 @@ static PetscErrorCode WithScene(int argc, char *argv[], PetscBool simulate)
   before = InputErrorCount();
   result = simulate ? CouplerRun(scene, resume) : CouplerCheck(scene);
   errors = InputErrorCount() - before;
-  if (result == BY_ERR_INPUT && !PetscGlobalRank) fprintf(stderr, "%" PetscInt_FMT " error%s in %s; nothing was run\n", errors, errors == 1 ? "" : "s", argv[0]);
+  if (result == BY_ERR_INPUT && !PetscGlobalRank)
+    fprintf(stderr, "%" PetscInt_FMT " error%s in %s; nothing was run\n", errors, errors == 1 ? "" : "s", argv[0]);
   if (!result) (void)SceneReportUnused(scene);
   (void)SceneDestroy(&scene);
   return result;
@@ -68,17 +70,18 @@ static PetscErrorCode Info(int argc, char *argv[])
 }
 
 static const Command commands[] = {
-  {"run", "SCENE.yaml [-resume DIR] [-key value ...]", "simulate into a run directory", Run},
-  {"check", "SCENE.yaml [-key value ...]", "validate and print the plan; writes nothing", Check},
-  {"plot", "RUN...", "pictures of runs", NULL},
-  {"info", "[-keys]", "version, libraries, devices; all keys as markdown", Info},
+    {"run", "SCENE.yaml [-resume DIR] [-key value ...]", "simulate into a run directory", Run},
+    {"check", "SCENE.yaml [-key value ...]", "validate and print the plan; writes nothing", Check},
+    {"plot", "RUN...", "pictures of runs", NULL},
+    {"info", "[-keys]", "version, libraries, devices; all keys as markdown", Info},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static int Help(void)
 {
   for (int i = 0; i < N_COMMANDS; i++) printf("byssus %-5s %-42s %s\n", commands[i].name, commands[i].arguments, commands[i].help);
-  printf("\nExit status: 0 done, 1 failure, 2 bad input (nothing was run), 3 the simulation broke down (state saved), 130 interrupted.\n\n");
+  printf("\nExit status: 0 done, 1 failure, 2 bad input (nothing was run), 3 the simulation broke down (state saved), 130 "
+         "interrupted.\n\n");
   return ExitStatus(ScenePrintKeys(CouplerSchema, "text", stdout));
 }
 

@@ -80,7 +80,9 @@ static void PrintErrors(Scene scene)
     else snprintf(place, sizeof place, "command line");
     Report(place, scene->errors[i].text);
   }
-  if (!PetscGlobalRank) fprintf(stderr, "%" PetscInt_FMT " error%s in %s; nothing was run\n", scene->n_errors, scene->n_errors == 1 ? "" : "s", scene->path);
+  if (!PetscGlobalRank)
+    fprintf(stderr, "%" PetscInt_FMT " error%s in %s; nothing was run\n", scene->n_errors, scene->n_errors == 1 ? "" : "s",
+            scene->path);
 }
 
 static PetscErrorCode ReadText(Scene scene)
@@ -209,7 +211,8 @@ PetscErrorCode SceneWrite(Scene scene, const char path[])
   failed = (PetscBool)(out == NULL);
   if (out) {
     fprintf(out, "# as run: %s", scene->path);
-    for (PetscInt i = 0; i < scene->n_overrides; i++) fprintf(out, " -%s %s", scene->overrides[i].name, scene->overrides[i].value ? scene->overrides[i].value : "");
+    for (PetscInt i = 0; i < scene->n_overrides; i++)
+      fprintf(out, " -%s %s", scene->overrides[i].name, scene->overrides[i].value ? scene->overrides[i].value : "");
     fputc('\n', out);
     PetscCall(NodeWrite(scene->root, out));
     if (ferror(out)) failed = PETSC_TRUE;
@@ -259,7 +262,7 @@ static const Block *FindBlock(Scene scene, const char key[], const char **rest)
 PetscErrorCode InputError(const char key[], const char format[], ...)
 {
   char         what[2 * PETSC_MAX_PATH_LEN], place[PETSC_MAX_PATH_LEN + 128], value[512] = "", text[3 * PETSC_MAX_PATH_LEN];
-  const char  *rest  = key, *def = NULL;
+  const char  *rest = key, *def = NULL;
   const Block *block = NULL;
   const Node  *node  = NULL;
   va_list      arguments;

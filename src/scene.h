@@ -23,9 +23,10 @@ typedef struct {
 } SceneSection;
 
 /* Read and check FILE and the command line's -key value overrides (argv[0] is the first of them) against `sections` (ends with name
-   NULL). Every error is reported with file:line (or "command line"), all at once; then BY_ERR_INPUT. On success all keys are in PETSc's
-   options database, files as absolute paths (relative ones are relative to the scene file). Unknown options with a PETSc solver prefix
-   (ksp_, pc_, snes_, mat_, vec_, log_, options_, malloc_, info, help) pass through untouched. */
+   NULL). Every error is reported with file:line (or "command line"), all at once; then BY_ERR_INPUT. On success all keys are in
+   PETSc's options database, files as absolute paths (relative ones are relative to the scene file, on the command line to the
+   working directory). Unknown options with a PETSc solver prefix (ksp_, pc_, snes_, mat_, vec_, log_, options_, malloc_, info, help) and
+   -<section>_view pass through untouched. */
 BY_EXTERN PetscErrorCode SceneRead(const char file[], int argc, char *argv[], const SceneSection sections[], Scene *scene);
 BY_EXTERN PetscErrorCode SceneDestroy(Scene *scene);
 /* warn about options that passed through to PETSc and that nothing in the run has asked for */

@@ -140,7 +140,8 @@ static PetscErrorCode OverrideKey(Scene scene, PetscInt b, const Key *key, const
     const size_t blanks = strspn(start, " [");
 
     end = strchr(start, ',');
-    snprintf(word, sizeof word, "%.*s", (int)((end ? (size_t)(end - start) : strlen(start)) - PetscMin(blanks, strlen(start))), start + blanks);
+    snprintf(word, sizeof word, "%.*s", (int)((end ? (size_t)(end - start) : strlen(start)) - PetscMin(blanks, strlen(start))),
+             start + blanks);
     word[strcspn(word, " ]")] = 0;
     PetscCall(NodeCreate(NODE_SCALAR, NULL, word, 0, &item));
     NodeAppend(node, item);
@@ -175,17 +176,20 @@ static PetscErrorCode SectionNode(Scene scene, const Block *around, const char n
   PetscFunctionBegin;
   *node = NodeFind(around->node, name);
   if (!*node || (*node)->kind == NODE_MAP) PetscFunctionReturn(PETSC_SUCCESS);
-  if ((*node)->kind == NODE_SCALAR && !(*node)->quoted && (!(*node)->text[0] || !strcmp((*node)->text, "~") || !strcmp((*node)->text, "null"))) {
+  if ((*node)->kind == NODE_SCALAR && !(*node)->quoted &&
+      (!(*node)->text[0] || !strcmp((*node)->text, "~") || !strcmp((*node)->text, "null"))) {
     (*node)->kind = NODE_MAP;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   NodeFormat(*node, value, sizeof value);
-  PetscCall(SceneAddError(scene, (*node)->line, "%s = %s is not a section\nexpected `key: value` lines beneath it", Dotted(around, name, dotted, sizeof dotted), value));
+  PetscCall(SceneAddError(scene, (*node)->line, "%s = %s is not a section\nexpected `key: value` lines beneath it",
+                          Dotted(around, name, dotted, sizeof dotted), value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Names of blocks must not stand for something else in the same place. */
-static PetscErrorCode CheckBlockName(Scene scene, PetscInt b, const SceneSection *section, const char name[], int line, const SceneSection sections[], PetscBool *good)
+static PetscErrorCode CheckBlockName(Scene scene, PetscInt b, const SceneSection *section, const char name[], int line,
+                                     const SceneSection sections[], PetscBool *good)
 {
   const Block *around = &scene->blocks[b];
   char         word[2 * BY_NAME_MAX], dotted[512];
@@ -194,7 +198,9 @@ static PetscErrorCode CheckBlockName(Scene scene, PetscInt b, const SceneSection
   *good = IsIdentifier(name);
   Dotted(around, section->list, dotted, sizeof dotted);
   if (!*good) {
-    PetscCall(SceneAddError(scene, line, "%s names '%s', which cannot be a section\nexpected letters, digits and _, beginning with a letter", dotted, Printable(name, word, sizeof word)));
+    PetscCall(SceneAddError(scene, line,
+                            "%s names '%s', which cannot be a section\nexpected letters, digits and _, beginning with a letter",
+                            dotted, Printable(name, word, sizeof word)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (FindKey(around->section->keys, name)) *good = PETSC_FALSE;
@@ -202,7 +208,8 @@ static PetscErrorCode CheckBlockName(Scene scene, PetscInt b, const SceneSection
     if (IsWithin(other, around->section) && !other->list && !strcmp(other->name, name)) *good = PETSC_FALSE;
   }
   for (PetscInt i = 0; i < scene->n_blocks; i++) {
-    if (scene->blocks[i].parent == b && scene->blocks[i].section != section && !strcmp(BlockName(&scene->blocks[i]), name)) *good = PETSC_FALSE;
+    if (scene->blocks[i].parent == b && scene->blocks[i].section != section && !strcmp(BlockName(&scene->blocks[i]), name))
+      *good = PETSC_FALSE;
   }
   if (!*good) PetscCall(SceneAddError(scene, line, "%s names %s, but that name is taken\nchoose another name", dotted, name));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -280,9 +287,11 @@ static PetscErrorCode CheckValue(Scene scene, const Block *block, const Key *key
 
   PetscFunctionBegin;
   PetscCall(KeyDescribe(key, allowed, sizeof allowed));
-  for (const Node *child = node->child; child; child = child->next) nested = (PetscBool)(nested || child->kind != NODE_SCALAR || strchr(child->text, ','));
+  for (const Node *child = node->child; child; child = child->next)
+    nested = (PetscBool)(nested || child->kind != NODE_SCALAR || strchr(child->text, ','));
   if (node->kind == NODE_MAP) snprintf(why, sizeof why, "is a section\nexpected %s", allowed);
-  else if (node->kind == NODE_LIST && (!takes_list || nested)) snprintf(why, sizeof why, "is %s\nexpected %s", takes_list ? "not a plain list" : "a list", allowed);
+  else if (node->kind == NODE_LIST && (!takes_list || nested))
+    snprintf(why, sizeof why, "is %s\nexpected %s", takes_list ? "not a plain list" : "a list", allowed);
   else {
     if (key->type == KEY_FILE) PetscCall(ResolveFile(scene, node));
     PetscCall(SceneValue(node, text, sizeof text));
@@ -314,10 +323,13 @@ static void Suggest(Scene scene, PetscInt b, const char name[], char hint[], siz
   }
   for (PetscInt i = 0; i < scene->n_blocks; i++) {
     const char *known = BlockName(&scene->blocks[i]);
-    if (scene->blocks[i].parent == b && KeyIsNear(name, known) && (!best || KeyDistance(name, known) < KeyDistance(name, best))) best = known;
+    if (scene->blocks[i].parent == b && KeyIsNear(name, known) && (!best || KeyDistance(name, known) < KeyDistance(name, best)))
+      best = known;
   }
   if (best) {
-    if (block->path[0] && block->node && block->node->line) snprintf(hint, n, "did you mean %s (line %d has the section)?", Dotted(block, best, dotted, sizeof dotted), block->node->line);
+    if (block->path[0] && block->node && block->node->line)
+      snprintf(hint, n, "did you mean %s (line %d has the section)?", Dotted(block, best, dotted, sizeof dotted),
+               block->node->line);
     else snprintf(hint, n, "did you mean %s?", Dotted(block, best, dotted, sizeof dotted));
     return;
   }
@@ -346,7 +358,8 @@ static PetscErrorCode UnknownKey(Scene scene, PetscInt b, const Node *node, cons
   Dotted(block, node->key, dotted, sizeof dotted);
   Suggest(scene, b, node->key, hint, sizeof hint);
   if (hint[0]) {
-    PetscCall(SceneAddError(scene, node->line, "%s is not a known %s\n%s", dotted, node->kind == NODE_MAP ? "section" : "key", hint));
+    PetscCall(
+        SceneAddError(scene, node->line, "%s is not a known %s\n%s", dotted, node->kind == NODE_MAP ? "section" : "key", hint));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
@@ -392,13 +405,15 @@ static PetscErrorCode CheckBlock(Scene scene, PetscInt b, const SceneSection sec
       PetscCall(CheckValue(scene, block, key, node));
       continue;
     }
-    for (PetscInt i = 0; i < scene->n_blocks; i++) is_block = (PetscBool)(is_block || (scene->blocks[i].parent == b && !strcmp(BlockName(&scene->blocks[i]), node->key)));
+    for (PetscInt i = 0; i < scene->n_blocks; i++)
+      is_block = (PetscBool)(is_block || (scene->blocks[i].parent == b && !strcmp(BlockName(&scene->blocks[i]), node->key)));
     if (!is_block) PetscCall(UnknownKey(scene, b, node, sections));
   }
   for (const Key *key = block->section->keys; key->name; key++) {
     if (!(key->flags & KEY_REQUIRED) || NodeFind(block->node, key->name)) continue;
     PetscCall(KeyDescribe(key, allowed, sizeof allowed));
-    PetscCall(SceneAddError(scene, block->node->line, "%s is missing\nexpected %s: %s", Dotted(block, key->name, dotted, sizeof dotted), allowed, key->help));
+    PetscCall(SceneAddError(scene, block->node->line, "%s is missing\nexpected %s: %s",
+                            Dotted(block, key->name, dotted, sizeof dotted), allowed, key->help));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -415,7 +430,7 @@ static PetscErrorCode CheckClashes(Scene scene)
 
     for (const char *c = block->prefix; *c; c++) {
       const size_t digits = *c == '_' ? strspn(c + 1, "0123456789") : 0;
-      reduced[n++] = *c;
+      reduced[n++]        = *c;
       if (digits && c[1 + digits] == '_') c += 1 + digits;
     }
     reduced[n] = 0;
@@ -432,7 +447,10 @@ static PetscErrorCode CheckClashes(Scene scene)
         snprintf(option, sizeof option, "%s%s", block->prefix + m, key->name);
         clash = (PetscBool)(FindKey(other->section->keys, option) != NULL && strlen(block->prefix) > m);
       }
-      if (clash) PetscCall(SceneAddError(scene, block->node ? block->node->line : 1, "the names %s and %s cannot be in one scene: their options -%s... are the same\nrename one", block->path, other->path, other->prefix));
+      if (clash)
+        PetscCall(SceneAddError(scene, block->node ? block->node->line : 1,
+                                "the names %s and %s cannot be in one scene: their options -%s... are the same\nrename one",
+                                block->path, other->path, other->prefix));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -458,7 +476,7 @@ static PetscErrorCode CheckOverrides(Scene scene)
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < scene->n_overrides; i++) {
-    const char *name = scene->overrides[i].name;
+    const char *name                  = scene->overrides[i].name;
     char        best[6 * BY_NAME_MAX] = "", option[6 * BY_NAME_MAX], word[2 * BY_NAME_MAX];
 
     if (scene->overrides[i].used || IsForeign(scene, name)) continue;

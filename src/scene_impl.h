@@ -10,14 +10,14 @@ typedef enum { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
 typedef struct _Node Node;
 struct _Node {
   NodeKind  kind;
-  char     *key;         /* NULL in lists and at the top                                     */
-  char     *text;        /* of a scalar                                                      */
-  char     *path;        /* absolute path of a KEY_FILE, once found                          */
-  PetscBool quoted;      /* "..." or '...' or a block text: never an empty section           */
-  PetscBool overridden;  /* given on the command line, which has no lines                    */
-  int       line;        /* of the key where there is one, else of the value; 1 is the first */
+  char     *key;          /* NULL in lists and at the top                                     */
+  char     *text;         /* of a scalar                                                      */
+  char     *path;         /* absolute path of a KEY_FILE, once found                          */
+  PetscBool quoted;       /* "..." or '...' or a block text: never an empty section           */
+  PetscBool overridden;   /* given on the command line, which has no lines                    */
+  int       line;         /* of the key where there is one, else of the value; 1 is the first */
   Node     *child, *last; /* first and last child                                            */
-  Node     *next;        /* sibling                                                          */
+  Node     *next;         /* sibling                                                          */
 };
 
 /* One section that may occur: the top, sph, flap, flap.proxy, each with its table. */

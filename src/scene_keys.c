@@ -65,7 +65,9 @@ PetscErrorCode ScenePrintKeys(const SceneSection sections[], const char kind[], 
 
   PetscFunctionBegin;
   PetscCall(PetscStrcmp(kind, "markdown", &markdown));
-  if (markdown) fprintf(out, "# Keys of a scene\n\nPrinted by `byssus info -keys`; every value in SI units. On the command line: `-section_key value`.\n");
+  if (markdown)
+    fprintf(out, "# Keys of a scene\n\nPrinted by `byssus info -keys`; every value in SI units. On the command line: `-section_key "
+                 "value`.\n");
   else fprintf(out, "Keys of a scene as options: -section_key <default>; every value in SI units.\n");
   for (const SceneSection *section = sections; section->name; section++) PrintSection(sections, section, markdown, out);
   PetscFunctionReturn(PETSC_SUCCESS);

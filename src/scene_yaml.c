@@ -96,17 +96,20 @@ static PetscErrorCode NextEvent(Scene scene, yaml_parser_t *parser, yaml_event_t
     const char *problem = parser->problem ? parser->problem : "cannot be read";
 
     *good = PETSC_FALSE;
-    if (parser->context) PetscCall(SceneAddError(scene, line, "YAML: %s, %s (line %d)", problem, parser->context, (int)parser->context_mark.line + 1));
+    if (parser->context)
+      PetscCall(SceneAddError(scene, line, "YAML: %s, %s (line %d)", problem, parser->context, (int)parser->context_mark.line + 1));
     else PetscCall(SceneAddError(scene, line, "YAML: %s", problem));
   } else if (event->type == YAML_ALIAS_EVENT) {
     *good = PETSC_FALSE;
-    PetscCall(SceneAddError(scene, (int)event->start_mark.line + 1, "aliases (*%.40s) are not part of a scene\nwrite the value out", (const char *)event->data.alias.anchor));
+    PetscCall(SceneAddError(scene, (int)event->start_mark.line + 1, "aliases (*%.40s) are not part of a scene\nwrite the value out",
+                            (const char *)event->data.alias.anchor));
     yaml_event_delete(event);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadNode(Scene scene, yaml_parser_t *parser, yaml_event_t *event, const char key[], int key_line, int depth, Node **node);
+static PetscErrorCode ReadNode(Scene scene, yaml_parser_t *parser, yaml_event_t *event, const char key[], int key_line, int depth,
+                               Node **node);
 
 static PetscErrorCode ReadKeyAndValue(Scene scene, yaml_parser_t *parser, yaml_event_t *event, int depth, Node *map)
 {
@@ -136,11 +139,12 @@ static PetscErrorCode ReadKeyAndValue(Scene scene, yaml_parser_t *parser, yaml_e
 }
 
 /* Read the value that begins with `event` (which is consumed); *node = NULL after an error. */
-static PetscErrorCode ReadNode(Scene scene, yaml_parser_t *parser, yaml_event_t *event, const char key[], int key_line, int depth, Node **node)
+static PetscErrorCode ReadNode(Scene scene, yaml_parser_t *parser, yaml_event_t *event, const char key[], int key_line, int depth,
+                               Node **node)
 {
-  const int              line  = key_line ? key_line : (int)event->start_mark.line + 1;
+  const int               line  = key_line ? key_line : (int)event->start_mark.line + 1;
   const yaml_event_type_t begin = event->type;
-  PetscBool              good  = PETSC_TRUE;
+  PetscBool               good  = PETSC_TRUE;
 
   PetscFunctionBegin;
   *node = NULL;
@@ -223,7 +227,8 @@ static void WriteScalar(const Node *node, FILE *out)
   const char *text  = node->path ? node->path : node->text;
   const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-";
 
-  if (!node->quoted && text[0] && strspn(text, plain) == strlen(text) && strcmp(text, "-") && strcmp(text, "---") && strcmp(text, "...")) {
+  if (!node->quoted && text[0] && strspn(text, plain) == strlen(text) && strcmp(text, "-") && strcmp(text, "---") &&
+      strcmp(text, "...")) {
     fputs(text, out);
     return;
   }

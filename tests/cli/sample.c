@@ -13,15 +13,16 @@ typedef struct {
 static const char *const ends[] = {"done", "failure", "input", "breakdown", "interrupted", NULL};
 
 static const Key sample_keys[] = {
-  {"spacing", KEY_REAL, offsetof(SampleParams, spacing), "m", NULL, 0, PETSC_MAX_REAL, KEY_LO_OPEN | KEY_REQUIRED, NULL, "particle spacing"},
-  {"ends", KEY_CHOICE, offsetof(SampleParams, ends), "", "done", 0, 0, 0, ends, "how the simulation ends"},
-  KEY_END};
+    {"spacing", KEY_REAL, offsetof(SampleParams, spacing), "m", NULL, 0, PETSC_MAX_REAL, KEY_LO_OPEN | KEY_REQUIRED, NULL,
+     "particle spacing"},
+    {"ends", KEY_CHOICE, offsetof(SampleParams, ends), "", "done", 0, 0, 0, ends, "how the simulation ends"},
+    KEY_END};
 static const Key no_keys[] = {KEY_END};
 
 PETSC_VISIBILITY_PUBLIC const SceneSection CouplerSchema[] = {
-  {"", no_keys, NULL, NULL, NULL},
-  {"sph", sample_keys, NULL, NULL, "the fluid"},
-  {NULL, NULL, NULL, NULL, NULL},
+    {"", no_keys, NULL, NULL, NULL},
+    {"sph", sample_keys, NULL, NULL, "the fluid"},
+    {NULL, NULL, NULL, NULL, NULL},
 };
 
 PetscErrorCode CouplerRun(Scene scene, const char resume[]);
@@ -45,7 +46,8 @@ PetscErrorCode CouplerRun(Scene scene, const char resume[])
   PetscCall(KSPDestroy(&ksp));
   printf("spacing %g\n", params.spacing);
   if (resume) printf("resumed from %s\n", resume);
-  if (codes[params.ends] == BY_ERR_INPUT) PetscFunctionReturn(InputError("sph.spacing", "is too coarse for this body\nexpected at most 0.01"));
+  if (codes[params.ends] == BY_ERR_INPUT)
+    PetscFunctionReturn(InputError("sph.spacing", "is too coarse for this body\nexpected at most 0.01"));
   PetscFunctionReturn(codes[params.ends]);
 }
 

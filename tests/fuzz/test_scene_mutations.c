@@ -4,7 +4,7 @@
 
 /* xorshift64 (Marsaglia 2003): the same mutations on every machine */
 static unsigned long long state_of_random = 88172645463325252ull;
-static unsigned Random(unsigned n)
+static unsigned           Random(unsigned n)
 {
   state_of_random ^= state_of_random << 13;
   state_of_random ^= state_of_random >> 7;
@@ -13,9 +13,13 @@ static unsigned Random(unsigned n)
 }
 
 /* pieces that mean something to YAML or to us */
-static const char *const pieces[] = {"\n",  ": ",  "- ",     "[",  "]",   "{",      "}",    ",",     "#",   "&a ",  "*a",     "!!int ", "|\n", ">\n",  "\"",       "'",
-                                     "---", "...", "%TAG ", "? ", "\t",  "nan",    "-1",   "1e999", "\\x",  "\xff", "\xc3\xa9", "sph",    "fill", "flap", "bodies: ", "column",
-                                     "<<: ", "~",  "null",  "  ", "\r", "\xef\xbb\xbf", "b_1", "proxy", "/dev/null", ".", "@", "`", "=", "walls: [xmin]"};
+static const char *const pieces[] = {
+    "\n",           ": ",           "- ",     "[",        "]",         "{",     "}",   ",",    "#",
+    "&a ",          "*a",           "!!int ", "|\n",      ">\n",       "\"",    "'",   "---",  "...",
+    "%TAG ",        "? ",           "\t",     "nan",      "-1",        "1e999", "\\x", "\xff", "\xc3\xa9",
+    "sph",          "fill",         "flap",   "bodies: ", "column",    "<<: ",  "~",   "null", "  ",
+    "\r",           "\xef\xbb\xbf", "b_1",    "proxy",    "/dev/null", ".",     "@",   "`",    "=",
+    "walls: [xmin]"};
 
 static void Mutate(char text[], size_t n_max)
 {
@@ -70,7 +74,8 @@ static void mutated_scenes_end_in_a_scene_or_a_report(void **state)
     if (result == 0) good++;
     else bad++;
     if (result != 0 && result != BY_ERR_INPUT) fail_msg("mutation %d: error %d\n%s", i, (int)result, text);
-    if (result && (!strstr(reported, "nothing was run") || strstr(reported, "PETSC ERROR"))) fail_msg("mutation %d: no report\n%s---\n%s", i, text, reported);
+    if (result && (!strstr(reported, "nothing was run") || strstr(reported, "PETSC ERROR")))
+      fail_msg("mutation %d: no report\n%s---\n%s", i, text, reported);
 
     /* what was accepted is written so that it is accepted again */
     if (!result) {
@@ -80,10 +85,11 @@ static void mutated_scenes_end_in_a_scene_or_a_report(void **state)
       snprintf(path, sizeof path, "%s/as_run.yaml", scene_directory);
       assert_petsc(SceneWrite(scene, path));
       assert_petsc(SceneDestroy(&scene));
-      file = fopen(path, "r");
+      file                                           = fopen(path, "r");
       again[fread(again, 1, sizeof again - 1, file)] = 0;
       fclose(file);
-      if (ReadScene(again, 0, NULL, &scene)) fail_msg("mutation %d: written scene is refused\n%s--- as\n%s---\n%s", i, text, again, reported);
+      if (ReadScene(again, 0, NULL, &scene))
+        fail_msg("mutation %d: written scene is refused\n%s--- as\n%s---\n%s", i, text, again, reported);
       assert_petsc(SceneDestroy(&scene));
     }
   }

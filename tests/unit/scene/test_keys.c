@@ -25,12 +25,12 @@ static void every_default_passes_its_own_check(void **state)
 
 static void only_finite_numbers_within_open_and_closed_ends_pass(void **state)
 {
-  static const Key   any    = {"any", KEY_REAL, 0, "m", NULL, 0, 0, 0, NULL, ""};
-  static const Key   half   = {"half", KEY_REAL, 0, "1", NULL, 0, 0.5, KEY_HI_OPEN, NULL, ""};
-  static const Key   open   = {"open", KEY_REAL, 0, "Pa s", "1e-3", 0, INFINITY, KEY_LO_OPEN, NULL, ""};
-  static const Key   vector = {"vector", KEY_VEC3, 0, "m", NULL, -1, 1, 0, NULL, ""};
-  static const Key   count  = {"count", KEY_INT, 0, "1", NULL, 1, 10, 0, NULL, ""};
-  const char *const  bad[]  = {"nan", "NaN", "inf", "-inf", "1e400", "", " ", "x", "1 m", "1,2", "0.1.2", "--1"};
+  static const Key  any    = {"any", KEY_REAL, 0, "m", NULL, 0, 0, 0, NULL, ""};
+  static const Key  half   = {"half", KEY_REAL, 0, "1", NULL, 0, 0.5, KEY_HI_OPEN, NULL, ""};
+  static const Key  open   = {"open", KEY_REAL, 0, "Pa s", "1e-3", 0, INFINITY, KEY_LO_OPEN, NULL, ""};
+  static const Key  vector = {"vector", KEY_VEC3, 0, "m", NULL, -1, 1, 0, NULL, ""};
+  static const Key  count  = {"count", KEY_INT, 0, "1", NULL, 1, 10, 0, NULL, ""};
+  const char *const bad[]  = {"nan", "NaN", "inf", "-inf", "1e400", "", " ", "x", "1 m", "1,2", "0.1.2", "--1"};
 
   (void)state;
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) assert_string_not_equal(Why(&any, bad[i]), "");
@@ -94,7 +94,7 @@ static void the_view_shows_every_key_with_its_unit(void **state)
 {
   FluidParams fluid;
   PetscViewer viewer;
-  char        path[] = "/tmp/byssus_view_XXXXXX", text[4096];
+  char        path[]     = "/tmp/byssus_view_XXXXXX", text[4096];
   const int   descriptor = mkstemp(path);
   FILE       *file;
 
@@ -106,7 +106,7 @@ static void the_view_shows_every_key_with_its_unit(void **state)
   assert_petsc(KeysView(FluidKeys, &fluid, viewer));
   assert_petsc(PetscViewerASCIIPopTab(viewer));
   assert_petsc(PetscViewerDestroy(&viewer));
-  file = fopen(path, "r");
+  file                                        = fopen(path, "r");
   text[fread(text, 1, sizeof text - 1, file)] = 0;
   fclose(file);
   unlink(path);
@@ -116,6 +116,7 @@ static void the_view_shows_every_key_with_its_unit(void **state)
   for (const Key *key = FluidKeys; key->name; key++) assert_non_null(strstr(text, key->name));
 }
 
-CHECK_MAIN(cmocka_unit_test(every_default_passes_its_own_check), cmocka_unit_test(only_finite_numbers_within_open_and_closed_ends_pass),
-           cmocka_unit_test(words_are_known_or_suggested), cmocka_unit_test(a_wrong_option_is_an_error_with_key_and_range),
+CHECK_MAIN(cmocka_unit_test(every_default_passes_its_own_check),
+           cmocka_unit_test(only_finite_numbers_within_open_and_closed_ends_pass), cmocka_unit_test(words_are_known_or_suggested),
+           cmocka_unit_test(a_wrong_option_is_an_error_with_key_and_range),
            cmocka_unit_test(the_view_shows_every_key_with_its_unit))

@@ -80,7 +80,7 @@ static void a_scene_as_run_reads_as_the_same_scene(void **state)
   snprintf(path, sizeof path, "%s/as_run.yaml", scene_directory);
   assert_petsc(SceneWrite(scene, path));
   assert_petsc(SceneDestroy(&scene));
-  file = fopen(path, "r");
+  file                                        = fopen(path, "r");
   text[fread(text, 1, sizeof text - 1, file)] = 0;
   fclose(file);
   assert_non_null(strstr(text, "spacing: 0.005"));

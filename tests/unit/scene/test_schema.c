@@ -25,11 +25,14 @@ static void every_row_has_help_unit_and_a_name_as_users_write_it(void **state)
     for (const Key *key = section->keys; key->name; key++) {
       const PetscBool number = (PetscBool)(key->type == KEY_REAL || key->type == KEY_INT || key->type == KEY_VEC3);
 
-      if (strspn(key->name, "abcdefghijklmnopqrstuvwxyz_0123456789") != strlen(key->name)) fail_msg("%s: %s", section->name, key->name);
-      if (!key->help || !key->help[0] || strchr(key->help, '|')) fail_msg("%s: %s has no help, or one that breaks the table", section->name, key->name);
+      if (strspn(key->name, "abcdefghijklmnopqrstuvwxyz_0123456789") != strlen(key->name))
+        fail_msg("%s: %s", section->name, key->name);
+      if (!key->help || !key->help[0] || strchr(key->help, '|'))
+        fail_msg("%s: %s has no help, or one that breaks the table", section->name, key->name);
       if (number && (!key->unit || !key->unit[0])) fail_msg("%s: %s is a number without unit", section->name, key->name);
       if (key->type == KEY_CHOICE && !key->choices) fail_msg("%s: %s is a choice of nothing", section->name, key->name);
-      if (number && key->lo > key->hi) fail_msg("%s: %s has no value between %g and %g", section->name, key->name, key->lo, key->hi);
+      if (number && key->lo > key->hi)
+        fail_msg("%s: %s has no value between %g and %g", section->name, key->name, key->lo, key->hi);
       for (const Key *other = section->keys; other < key; other++) assert_string_not_equal(other->name, key->name);
     }
   }
@@ -51,5 +54,6 @@ static void every_list_of_blocks_is_a_key_of_its_parent(void **state)
   }
 }
 
-CHECK_MAIN(cmocka_unit_test(every_default_passes_its_own_check), cmocka_unit_test(every_row_has_help_unit_and_a_name_as_users_write_it),
+CHECK_MAIN(cmocka_unit_test(every_default_passes_its_own_check),
+           cmocka_unit_test(every_row_has_help_unit_and_a_name_as_users_write_it),
            cmocka_unit_test(every_list_of_blocks_is_a_key_of_its_parent))
