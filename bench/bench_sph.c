@@ -15,6 +15,7 @@ typedef struct {
   PetscBool      walls;
   PetscReal      phase[N_PHASES];
   PetscLogDouble start;
+  PetscReal      gauge[3], gauge_sum[3], gauge_square[3]; /* depths of gauges in the middle of the tank over H; p/(rho g z) */
   PetscReal      force_sum, force_square, height_sum, error_sum, iterations, compression, compression_max;
   PetscInt       n_steps, n_measured, not_converged, worst;
 } Run;
@@ -83,6 +84,15 @@ static PetscErrorCode Step(SPH sph, Run *run, PetscReal *time, PetscReal from)
   if (*time >= from) {
     PetscCall(Measure(sph, run, &error, &height));
     run->n_measured++;
+    for (int k = 0; k < 3; k++) {
+      const PetscReal at[3] = {0.5 * run->hi[0], 0.5 * run->hi[1], (1.0 - run->gauge[k]) * run->depth};
+      PetscReal       p, v[3];
+      PetscBool       inside;
+      PetscCall(SPHInterpolate(sph, at, &p, v, &inside));
+      p /= 1000.0 * run->g * run->gauge[k] * run->depth;
+      run->gauge_sum[k] += p;
+      run->gauge_square[k] += p * p;
+    }
     run->force_sum += force[14];
     run->force_square += force[14] * force[14];
     run->height_sum += height;
@@ -111,6 +121,11 @@ static PetscErrorCode Report(SPH sph, Run *run, PetscReal time, PetscReal from)
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "particles %d, steps %d, time %.3f s, measured from %.3f s\n", (int)n, (int)run->n_steps, (double)time, (double)from));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "compression: mean %.2e, largest %.2e\n", (double)(run->compression / run->n_measured), (double)run->compression_max));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "pressure against rho g z: mean error %.2f %%\n", 100.0 * (double)(run->error_sum / run->n_measured)));
+  for (int k = 0; k < 3; k++) {
+    const PetscReal p = run->gauge_sum[k] / run->n_measured;
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "gauge at %.2f of the depth / rho g z: %.4f, rms %.2f %%\n", (double)run->gauge[k], (double)p,
+                          100.0 * sqrt(PetscMax(0.0, (double)(run->gauge_square[k] / run->n_measured - p * p)))));
+  }
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "force on the floor / weight: %.5f, noise (rms) %.2f %%\n", (double)(mean / weight),
                         100.0 * sqrt(PetscMax(0.0, (double)(run->force_square / run->n_measured - mean * mean))) / (double)weight));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "offset of the wetted surface: %.3f dx\n", (double)((run->height_sum / run->n_measured - 0.5 * run->depth) / dx)));
@@ -180,6 +195,7 @@ static PetscErrorCode Main(void)
   if (pack) ByCall(SPHPack(sph, 1e-3, 50, NULL, NULL));
   run.walls = (PetscBool)!open_sides;
   run.g     = 9.81;
+  for (int k = 0; k < 3; k++) run.gauge[k] = 0.25 * (k + 1);
   for (int k = 0; k < 2; k++) run.hi[k] = hi[k];
   PetscCall(SPHGetMass(sph, &particle_mass));
   run.area  = hi[0] * hi[1];

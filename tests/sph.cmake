@@ -1,1 +1,4 @@
 # tests of sph
+byssus_test(unit/sph/test_kernel base sph)
+byssus_test(unit/sph/test_density base sph)
+byssus_test(unit/sph/test_pressure base sph)

@@ -165,6 +165,7 @@ static PetscErrorCode AllocateState(SPH sph)
 
   PetscCall(PetscCalloc6(SPH_CHUNKS(n) * SPH_SUMS, &sph->partial, n, &sph->order, n, &sph->rho, 3 * n, &sph->v_star, 3 * n, &sph->accel, n, &sph->rho_pairs));
   PetscCall(PetscCalloc6(n, &sph->open, n, &sph->open_surfaces, 3 * n, &sph->G_planes, 3 * n, &sph->G, n, &sph->rate, n, &sph->wall_rate));
+  PetscCall(PetscCalloc1(n, &sph->wall_excess));
   PetscCall(PetscCalloc6(n, &sph->rhs, n, &sph->diagonal, n, &sph->scale, n, &sph->y, n, &sph->residual, n, &sph->direction));
   PetscCall(PetscCalloc4(n, &sph->Adirection, n, &sph->p_tilde, n, &sph->response, n, &sph->mode));
   if (sph->params.viscosity > 0) PetscCall(PetscCalloc1(n, &sph->friction_planes));
@@ -204,6 +205,8 @@ PetscErrorCode SPHSetUp(SPH sph)
   sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : CalibratedWallFactor(par->kernel, par->support);
   sph->relax_time  = par->relax_time;
   if (sph->relax_time == 0.0 && par->solver == SPH_SOLVER_PCG && g > 0) sph->relax_time = 0.5 * sqrt(sph->h / g);
+  sph->phi_lone    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.25 * par->spacing, sph->h);
+  sph->phi_full    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.1 * par->spacing, sph->h);
   sph->filter_norm = SPHFilterNorm(grad2 * sph->mass * sph->mass);
   sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
 
@@ -263,6 +266,7 @@ PetscErrorCode SPHDestroy(SPH *sph)
   PetscCall(PetscFree6(s->open, s->open_surfaces, s->G_planes, s->G, s->rate, s->wall_rate));
   PetscCall(PetscFree6(s->rhs, s->diagonal, s->scale, s->y, s->residual, s->direction));
   PetscCall(PetscFree4(s->Adirection, s->p_tilde, s->response, s->mode));
+  PetscCall(PetscFree(s->wall_excess));
   PetscCall(PetscFree(s->friction_planes));
   PetscCall(PetscFree3(s->loops.cell, s->loops.start, s->loops.count));
   PetscCall(PetscFree4(s->loops.near_x, s->loops.pressure, s->loops.vector, s->loops.wall));

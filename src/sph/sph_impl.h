@@ -37,6 +37,7 @@ struct _p_SPH {
   /* derived at SetUp */
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
   PetscReal relax_time;              /* [s]; 0: correct all at once                      */
+  PetscReal phi_lone, phi_full;      /* of SPHWallBound: lambda at 0.25 and at 0.1 dx [1] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
@@ -50,6 +51,7 @@ struct _p_SPH {
   PetscReal *rho_pairs;              /* n, sum_j m W_ij                                  */
   PetscReal *open;                   /* n, prod_k (1 - phi_k) over planes, then over all */
   PetscReal *open_surfaces;          /* n, the product over surfaces alone               */
+  PetscReal *wall_excess;            /* n, rho0 max_k (phi_k - bound) over planes and surfaces [kg/m^3] */
   PetscReal *G_planes, *G;           /* n x 3 [kg/m^4], planes alone and the union       */
   PetscReal *rate;                   /* n, D v* without the walls' own motion [kg/(m^3 s)] */
   PetscReal *wall_rate;              /* n, sum_b rho0 c share . v_b                      */

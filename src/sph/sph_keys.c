@@ -20,7 +20,7 @@ const Key SPHKeys[] = {
   {"relax_time", KEY_REAL, FIELD(relax_time), "s", "0", 0, 1e3, 0, NULL,
    "time in which a density error is corrected; 0 = 0.5 sqrt(h/g) with pcg, one step with jacobi"},
   {"wall_factor", KEY_REAL, FIELD(wall_factor), "1", "0", 0, 2, 0, NULL, "scales the volume of planar walls; 0 = calibrated"},
-  {"noise_damping", KEY_REAL, FIELD(noise_damping), "1", "1", 0, 5, 0, NULL, "rate at which the shortest waves of particle noise decay, over sqrt(g/h); 0 = no filter"},
+  {"noise_damping", KEY_REAL, FIELD(noise_damping), "1", "3", 0, 10, 0, NULL, "rate at which the shortest waves of particle noise decay, over sqrt(g/h); 0 = no filter"},
   {"mean_velocity", KEY_VEC3, FIELD(mean_velocity), "m/s", "0, 0, 0", -1e3, 1e3, 0, NULL, "mean velocity kept by a body force; a zero component is left alone"},
   {"free_surface", KEY_BOOL, FIELD(free_surface), "", "true", 0, 0, 0, NULL, "no negative pressure; false for a domain full of fluid"},
   {"solver", KEY_CHOICE, FIELD(solver), "", "pcg", 0, 0, 0, Solvers, "pressure solver: projected conjugate gradients, or relaxed Jacobi"},

@@ -27,6 +27,16 @@ BY_HD SPH_REAL SPHPairViscosity(SPH_REAL mu_over_rho2, SPH_REAL v_dot_x, SPH_REA
   return (SPH_REAL)10 * mu_over_rho2 * v_dot_x / (r2 + (SPH_REAL)0.01*h*h);
 }
 
+/* part phi of its kernel that a single wall may take from a particle, so that one that hardly has neighbours stays outside too. Its
+   own density m W(0) + rho0 phi would let a lone particle sink to phi = 0.68, a fifth of h inside. `full` is for a particle whose
+   neighbours fill at least 0.52 of what the other walls leave open, which in settled water hardly ever acts; `lone` is for the particle
+   alone, 0.32 (cubic spline, h = 2 dx). */
+BY_HD SPH_REAL SPHWallBound(SPH_REAL filled, SPH_REAL lone, SPH_REAL full)
+{
+  const SPH_REAL t = (filled - (SPH_REAL)0.32) * (SPH_REAL)5;
+  return t <= (SPH_REAL)0 ? lone : t >= (SPH_REAL)1 ? full : lone + t * (full - lone);
+}
+
 /* noise filter: (L v)_i = - sum_j [ (v_i - v_j) . g ] g / N, g = m grad W_ij, damps the relative motion of neighbours along their line;
    applied twice, -rate L L v, it acts on a wave of length l as (1/l)^4: on particle noise and hardly on the flow. L is symmetric, negative
    and central, so that momentum and angular momentum stay and energy falls. SPHPairRate() gives the bracket.

@@ -3,7 +3,7 @@
 
    One unknown a particle, p~ = p/rho0^2. With D the density rate of a velocity and a = -D^T p~ the pressure acceleration
      A = dt^2 D D^T (+ the response of compliant walls, method 5.3)
-     b = min(1, dt/tau) (rho - rho0) + dt (D v* - wall's own motion)
+     b = min(1, dt/tau) max(rho - rho0, excess of a wall) + dt (D v* - wall's own motion)
      p~ >= 0,  A p~ >= b,  equality where p~ > 0
    A is symmetric and positive semidefinite. Solvers work on y = p~/S, S = diag(D D^T)^(-1/2), which keeps the bound. */
 #include <math.h>
@@ -49,7 +49,7 @@ static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
   for (int i = 0; i < n; i++) {
     // a particle that touches nothing has no pressure
     const PetscReal S = sph->diagonal[i] > tiny ? 1.0 / sqrt(sph->diagonal[i]) : 0.0;
-    const PetscReal b = relax * (sph->rho[i] - rho0) + dt * (sph->rate[i] - sph->wall_rate[i]);
+    const PetscReal b = relax * PetscMax(sph->rho[i] - rho0, sph->wall_excess[i]) + dt * (sph->rate[i] - sph->wall_rate[i]);
 
     sph->scale[i] = S;
     sph->rhs[i]   = S * b;
