@@ -113,7 +113,7 @@ static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
   const ProxyGeometry *g = &p->geometry;
   const ProxySampling *q = &p->sampling;
   const PetscInt       t = q->triangle[i];
-  double               area = 0.0, S[6] = {0}, n[3] = {0}, x[3] = {0}, Sn[3], l;
+  double               area = 0.0, S[6] = {0}, n[3] = {0}, x[3] = {0}, l;
 
   for (int c = 0; c < 3; c++) {
     for (int k = 0; k < 3; k++) {
@@ -128,25 +128,22 @@ static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
   for (PetscInt k = q->part_start[i]; k < q->part_start[i + 1]; k++) {
     const double a = q->part[k]*g->area[q->part_triangle[k]];
     area += a;
-    for (int m = 0; m < 6; m++) S[m] += a*g->shape[6*q->part_triangle[k] + m];
+    ProxyShapeAddTurned(&g->shape[6*q->part_triangle[k]], &g->normal[3*q->part_triangle[k]], n, a, S);
   }
-  for (int m = 0; m < 6; m++) S[m] = area > 0.0 ? S[m]/area : g->shape[6*t + m];
-
-  // in the proxy's tangent plane: P S P, P = I - n n^T
-  ProxyShapeTimes(S, n, Sn);
-  const double nSn = Dot3(n, Sn);
-  for (int k = 0; k < 3; k++) {
-    const int u = k == 2 ? 1 : 0, v = k == 0 ? 1 : 2;
-    S[k] += -2.0*n[k]*Sn[k] + nSn*n[k]*n[k];
-    S[3 + k] += -n[u]*Sn[v] - n[v]*Sn[u] + nSn*n[u]*n[v];
+  if (area > 0.0) {
+    for (int m = 0; m < 6; m++) S[m] /= area;
+  } else {
+    ProxyShapeAddTurned(&g->shape[6*t], &g->normal[3*t], n, 1.0, S);
   }
-  ProxyShapeBound(1.0/p->fluid.h, S);
+  ProxyShapeBound(PROXY_CURVATURE/p->fluid.h, S);
 
   for (int k = 0; k < 3; k++) {
     p->x[3*i + k]      = b->x[k] = x[k];
     p->normal[3*i + k] = b->n[k] = n[k];
   }
   for (int m = 0; m < 6; m++) b->S[m] = S[m];
+  b->bend    = ProxyShapeBend(S);
+  b->offset  = q->offset[i];
   p->area[i] = b->weight = area;
 }
 
@@ -226,6 +223,8 @@ static PetscErrorCode Sample(Proxy p)
   PetscCall(PetscLogEventBegin(EventSample, 0, 0, 0, 0));
   PetscCall(ProxySample(&p->surface, &p->geometry, &p->params, &p->fluid, &p->sampling));
   PetscCall(Reserve(p, p->sampling.n));
+  for (PetscInt i = 0; i < p->sampling.n; i++) PlacePoint(p, i, &p->points[i]);
+  ProxyOffsets(&p->surface, &p->geometry, p->points, &p->sampling);
   p->n_samplings++;
   PetscCall(PetscLogEventEnd(EventSample, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,7 +265,7 @@ PetscErrorCode ProxySetUp(Proxy p)
   PetscCall(ProxyGeometryCreate(&p->surface, &p->geometry));
   PetscCall(PetscMalloc1(p->surface.n_nodes, &p->node_weight));
   PetscCall(PetscArraycpy(p->geometry.x, p->surface.X, 3*p->surface.n_nodes));
-  ProxyGeometryUpdate(&p->surface, 1.0/p->fluid.h, &p->geometry);
+  ProxyGeometryUpdate(&p->surface, PROXY_CURVATURE/p->fluid.h, &p->geometry);
   PetscCall(Sample(p));
   PetscCall(PlaceProxies(p));
   p->setup = PETSC_TRUE;
@@ -313,7 +312,7 @@ PetscErrorCode ProxyUpdate(Proxy p, const PetscReal x[], const PetscReal v[])
   PetscCall(PetscArraycmp(p->geometry.x, x, 3*p->surface.n_nodes, &same));
   if (!same) {
     PetscCall(PetscArraycpy(p->geometry.x, x, 3*p->surface.n_nodes));
-    ProxyGeometryUpdate(&p->surface, 1.0/p->fluid.h, &p->geometry);
+    ProxyGeometryUpdate(&p->surface, PROXY_CURVATURE/p->fluid.h, &p->geometry);
     if (p->params.resample_tolerance == 0.0 || Change(p) > p->params.resample_tolerance) PetscCall(Sample(p));
     PetscCall(PlaceProxies(p));
   }
@@ -358,7 +357,7 @@ PetscErrorCode ProxySetSampling(Proxy p, const PetscReal x[])
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
   PetscCall(PetscArraycpy(p->geometry.x, x, 3*p->surface.n_nodes));
-  ProxyGeometryUpdate(&p->surface, 1.0/p->fluid.h, &p->geometry);
+  ProxyGeometryUpdate(&p->surface, PROXY_CURVATURE/p->fluid.h, &p->geometry);
   PetscCall(Sample(p));
   PetscCall(PlaceProxies(p));
   PetscCall(PlaceVelocities(p));

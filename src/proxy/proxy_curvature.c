@@ -44,8 +44,8 @@ static void FanNormal(const ProxySurface *s, const ProxyGeometry *g, PetscInt fa
   for (int d = 0; d < 3; d++) n[d] = l > 0.0 ? n[d]/l : g->normal[3*(s->fan_corner[s->fan_start[fan]]/3) + d];
 }
 
-/* Bound the principal curvatures: S is scaled down so that none exceeds max_curvature [1/m]. Beyond 1/h the osculating paraboloid has
-   no meaning at the kernel's scale (lambda_H would no longer fall with distance). */
+/* Bound the principal curvatures: S is scaled down so that none exceeds max_curvature [1/m]. Beyond about 1/h the osculating
+   surface has no meaning at the kernel's scale (lambda_H would no longer fall with distance). */
 void ProxyShapeBound(PetscReal max_curvature, double S[6])
 {
   const double mean = 0.5*(S[0] + S[1] + S[2]);

@@ -6,6 +6,9 @@
 #include "proxy/proxy_kernel.h"
 #include <petsc/private/petscimpl.h>
 
+/* bound on principal curvatures, times h: the profile's 1 + c z stays positive for |z| < h */
+#define PROXY_CURVATURE 0.9
+
 /* what the proxies must know of the fluid */
 typedef struct {
   double   h, dx;          /* support radius, spacing [m]                                                  */
@@ -50,6 +53,8 @@ typedef struct {
   int       *kind, *side;                /* ProxyKind; for edges the side of the triangle                  */
   PetscInt  *part_start, *part_triangle; /* which triangles' area each proxy stands for ...                */
   PetscReal *part;                       /* ... and which fraction of it                                   */
+  PetscInt  *piece_start, *piece_owner;  /* triangles cut into m^2 pieces (row by row), the proxy of each  */
+  PetscReal *offset;                     /* n [m], see ProxyPoint                                          */
   PetscReal *area0, *edge0;              /* triangle areas [m^2], edge lengths [m] when sampled            */
   PetscReal *x;                          /* n_nodes x 3 [m], where the surface was when sampled            */
 } ProxySampling;
@@ -111,6 +116,8 @@ void           ProxyShapeBound(PetscReal max_curvature, double S[6]);
 /* proxy_sample.c */
 PetscErrorCode ProxySample(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyParams *params, const ProxyFluid *fluid,
                            ProxySampling *sampling);
+/* offsets of `points` from the surface that they stand for, into sampling->offset */
+void           ProxyOffsets(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyPoint points[], ProxySampling *sampling);
 PetscErrorCode ProxySamplingDestroy(ProxySampling *sampling);
 
 /* proxy_contacts.c */

@@ -20,7 +20,9 @@ typedef struct {
   double x[3];        /* position [m]; of the ellipsoid kernel: inset along -n                                          */
   double n[3];        /* outward unit normal                                                                            */
   double S[6];        /* shape operator [1/m]                                                                           */
+  double bend;        /* c = tr S^3/tr S^2 [1/m], ProxyShapeBend(): the curvature of spheres and cylinders               */
   double e[3];        /* ellipsoid: unit tangent of radius a                                                            */
+  double offset;      /* mean height [m] of the surface that it stands for above its osculating surface                 */
   double radius[2];   /* half-space: tangential radius h/kappa-bar [m], z_max [m]; ellipsoid: a, b [m] (c = h)          */
   double weight;      /* half-space: area [m^2]; ellipsoid: volume Psi/rho0 [m^3] with the factor                       */
   double inset;       /* ellipsoid: depth of x beneath the surface [m]                                                  */
@@ -91,18 +93,72 @@ BY_HD double ProxySmoothStep(double s, double *slope)
   return s*s*(3.0 - 2.0*s);
 }
 
-/* Half-space profile of one pair (method 4.4): t = r - (n.r) n, z = n.r + 1/2 t.S t, w = A w2(|t|, R) c(z),
-   lambda_H = lambda(z) - 1/2 H h^2 K(z), H = tr S/2; all gradients exact. With S = H (I - n n^T) this is the method's formula; the
-   full S also follows cylinders. Returns 0 when the pair does not touch. */
+/* c = tr S^3/tr S^2 [1/m]: the curvature of a sphere, of a cylinder, 0 of a plane and of a minimal saddle */
+BY_HD double ProxyShapeBend(const double S[6])
+{
+  const double mean = 0.5*(S[0] + S[1] + S[2]);
+  const double square = S[0]*S[0] + S[1]*S[1] + S[2]*S[2] + 2.0*(S[3]*S[3] + S[4]*S[4] + S[5]*S[5]);
+  const double gauss = 0.5*(4.0*mean*mean - square); // k1 k2, S has rank two
+
+  // k1^3 + k2^3 = (k1 + k2)(k1^2 - k1 k2 + k2^2)
+  return square > 0.0 ? 2.0*mean*(square - gauss)/square : 0.0;
+}
+
+/* Height z [m] of r above the osculating surface and its gradient: with F = n.r + 1/2 r.(S + c n n^T) r, z = 2 F/(1 + |grad F|), which is
+   the distance from a plane, a sphere (c = curvature) and a cylinder to round-off, wherever on them the proxy lies; else to third
+   order in |r|. The method's z = n.r + 1/2 H |t|^2 is its second-order part on a sphere. */
+BY_HD double ProxyHeight(const ProxyPoint *b, double z0, const double t[3], double grad[3])
+{
+  double St[3], g[3], Sg[3], F, G;
+
+  ProxyShapeTimes(b->S, t, St);
+  F = z0 + 0.5*(Dot3(t, St) + b->bend*z0*z0);
+  for (int k = 0; k < 3; k++) g[k] = (1.0 + b->bend*z0)*b->n[k] + St[k];
+  G = Norm3(g);
+  ProxyShapeTimes(b->S, g, Sg);
+  const double along = b->bend*Dot3(b->n, g), u = 2.0/(1.0 + G), v = G > 0.0 ? -0.5*F*u*u/G : 0.0;
+  for (int k = 0; k < 3; k++) grad[k] = u*g[k] + v*(Sg[k] + along*b->n[k]);
+  return u*F;
+}
+
+/* S of a surface element with normal `from`, turned with it into the tangent plane of `to`: R S R^T, R the shortest rotation; added to T
+   with a factor. Traces are kept, so a ball's proxies have its curvature however much of it they stand for. */
+BY_HD void ProxyShapeAddTurned(const double S[6], const double from[3], const double to[3], double factor, double T[6])
+{
+  const double c = Dot3(from, to), f = c > -0.5 ? 1.0/(1.0 + c) : 0.0, M[9] = {S[0], S[3], S[4], S[3], S[1], S[5], S[4], S[5], S[2]};
+  double       v[3], R[9], RM[9];
+
+  // R = I + [v] + [v]^2/(1 + c), v = from x to; opposite normals are left alone
+  Cross3(from, to, v);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) R[3*i + j] = f*v[i]*v[j] + (i == j ? (f > 0.0 ? c : 1.0) : 0.0);
+  }
+  if (f > 0.0) {
+    R[1] -= v[2], R[2] += v[1], R[3] += v[2], R[5] -= v[0], R[6] -= v[1], R[7] += v[0];
+  }
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) RM[3*i + j] = R[3*i]*M[j] + R[3*i + 1]*M[3 + j] + R[3*i + 2]*M[6 + j];
+  }
+  for (int k = 0; k < 3; k++) {
+    const int i = k == 2 ? 1 : 0, j = k == 0 ? 1 : 2;
+    T[k] += factor*Dot3(&RM[3*k], &R[3*k]);
+    T[3 + k] += factor*Dot3(&RM[3*i], &R[3*j]);
+  }
+}
+
+/* Half-space profile of one pair (method 4.4): t = r - (n.r) n, w = A w2(|t|, R) cut(z), height z of ProxyHeight(),
+     lambda_H = lambda(z) - 1/2 H_z h^2 K(z),   H_z = H/(1 + c z), H = tr S/2
+   H_z is the mean curvature of the parallel surface through the particle. For a ball of radius 1/H this is the exact part of the kernel
+   in the ball (integrate 2 pi r^2 W (1 - (D^2 + r^2 - 1/H^2)/(2 D r)) over r, D = 1/H + z); the method's H is its first order.
+   All gradients exact. Returns 0 when the pair does not touch. */
 BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const double r[3], ProxyPair *pair)
 {
   const double z0 = Dot3(b->n, r), R = b->radius[0], z_max = b->radius[1], H = 0.5*(b->S[0] + b->S[1] + b->S[2]);
   const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]}, t2 = Dot3(t, t);
-  double       St[3], F, cut = 1.0, cut_slope = 0.0, w, z, d, slope;
+  double       F, cut = 1.0, cut_slope = 0.0, w, z, d, slope, K;
 
   if (t2 >= R*R) return 0;
-  ProxyShapeTimes(b->S, t, St);
-  z = z0 + 0.5*Dot3(t, St);
+  z = ProxyHeight(b, z0, t, pair->grad_z) - b->offset;
   if (z <= -h || z >= z_max) return 0;
 
   // weight in the tangent plane, faded behind the surface and far in front of it
@@ -116,15 +172,16 @@ BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const do
     cut_slope = -slope / (PROXY_FRONT_FADE*h);
   }
 
-  // profile above the osculating surface
+  // profile above the osculating surface; K' = -2 z A/h^2
+  const double bend = 1.0/(1.0 + b->bend*z), Hz = H*bend;
   d            = z < 0.0 ? -z : z;
+  K            = H != 0.0 ? 0.5*h*h*ProxyPlaneMoment(kernel, d, h) : 0.0;
   pair->z      = z;
   pair->w      = b->weight * w * cut;
   pair->cover  = b->weight * w;
-  pair->lambda = SPHHalfSpace(kernel, z, h) - 0.5*H*h*h*ProxyPlaneMoment(kernel, d, h);
-  slope        = -SPHPlaneDensity(kernel, d, h) * (1.0 - H*z);
+  pair->lambda = SPHHalfSpace(kernel, z, h) - Hz*K;
+  slope        = -SPHPlaneDensity(kernel, d, h) * (1.0 - Hz*z) + K*Hz*bend*b->bend;
   for (int k = 0; k < 3; k++) {
-    pair->grad_z[k]      = b->n[k] + St[k];
     pair->grad_lambda[k] = slope * pair->grad_z[k];
     pair->grad_cover[k]  = b->weight * F*t[k];
     pair->grad_w[k]      = b->weight * (F*cut*t[k] + w*cut_slope*pair->grad_z[k]);
@@ -153,16 +210,16 @@ BY_HD double ProxyEllipsoidW(int kernel, double h, const ProxyPoint *b, const do
 /* phi of one ellipsoid pair: V_b W_b(r) with a smooth end behind the surface: 1 for height z >= 0, 0 at z = -h/4 (one-sidedness) */
 BY_HD double ProxyPairEllipsoid(int kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
 {
-  const double z0 = Dot3(b->n, r);
-  const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]};
-  double       St[3], W, cut, slope, z;
+  double s[3], t[3], grad_z[3], W, cut, slope, z;
 
   W = ProxyEllipsoidW(kernel, h, b, r, grad);
   if (W == 0.0) return 0.0;
-  ProxyShapeTimes(b->S, t, St);
-  z   = z0 - b->inset + 0.5*Dot3(t, St);
+  for (int k = 0; k < 3; k++) s[k] = r[k] - b->inset*b->n[k]; // from the surface
+  const double z0 = Dot3(b->n, s);
+  for (int k = 0; k < 3; k++) t[k] = s[k] - z0*b->n[k];
+  z   = ProxyHeight(b, z0, t, grad_z) - b->offset;
   cut = ProxySmoothStep(1.0 + z / (PROXY_ELLIPSOID_FADE*h), &slope);
-  for (int k = 0; k < 3; k++) grad[k] = b->weight * (cut*grad[k] + W * slope/(PROXY_ELLIPSOID_FADE*h) * (b->n[k] + St[k]));
+  for (int k = 0; k < 3; k++) grad[k] = b->weight * (cut*grad[k] + W * slope/(PROXY_ELLIPSOID_FADE*h) * grad_z[k]);
   return b->weight * cut * W;
 }
 

@@ -193,17 +193,27 @@ typedef struct {
   PetscReal part;
 } Part;
 
+/* barycentric centre of the piece (i, j) of m^2: upward ones at (i + 1/3, j + 1/3)/m, downward ones at (i + 2/3, j + 2/3)/m */
+static inline void PieceCentre(PetscInt m, PetscInt i, PetscInt j, int down, PetscReal b[3])
+{
+  const PetscReal o = down ? 2.0/3.0 : 1.0/3.0;
+  b[0] = 1.0 - (i + j + 2.0*o)/m;
+  b[1] = (i + o)/m;
+  b[2] = (j + o)/m;
+}
+
 /* Split every triangle into m^2 congruent ones (side at most a third of the spacing) and give each to the nearest proxy of its patch:
    parts[] gets (proxy, triangle, fraction), fractions of a triangle summing to 1. */
 static PetscErrorCode SplitAreas(const ProxySurface *s, const ProxyGeometry *g, PetscReal h, const PetscReal kappa[], const Candidates *list,
-                                 PetscInt *n_parts, Part **parts)
+                                 ProxySampling *sampling, PetscInt *n_parts, Part **parts)
 {
   PointGrid  grid;
   PetscReal *x, spacing = 0.0;
   PetscInt  *first, *owner;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(3*list->n, &x, s->n_triangles + 1, &first));
+  PetscCall(PetscMalloc1(3*list->n, &x));
+  PetscCall(PetscMalloc1(s->n_triangles + 1, &first));
   for (PetscInt i = 0; i < list->n; i++) {
     PointOf(s, g->x, list->c[i].triangle, list->c[i].b, &x[3*i]);
     spacing = PetscMax(spacing, h/(2.0*list->c[i].kappa));
@@ -225,12 +235,11 @@ static PetscErrorCode SplitAreas(const ProxySurface *s, const ProxyGeometry *g, 
   for (PetscInt t = 0; t < s->n_triangles; t++) {
     const PetscInt m = (PetscInt)floor(sqrt((double)(first[t + 1] - first[t])) + 0.5);
     PetscInt       k = first[t];
-    // upward small triangles (i, j) have their centre at (i + 1/3, j + 1/3)/m, downward ones at (i + 2/3, j + 2/3)/m
     for (PetscInt i = 0; i < m; i++) {
       for (PetscInt j = 0; j < m - i; j++) {
         for (int down = 0; down < (i + j < m - 1 ? 2 : 1); down++) {
-          const PetscReal o = down ? 2.0/3.0 : 1.0/3.0, b[3] = {1.0 - (i + j + 2.0*o)/m, (i + o)/m, (j + o)/m};
-          PetscReal       p[3];
+          PetscReal b[3], p[3];
+          PieceCentre(m, i, j, down, b);
           PointOf(s, g->x, t, b, p);
           owner[k++] = Nearest(&grid, list, x, g, s->patch[t], p, &g->normal[3*t]);
         }
@@ -256,10 +265,58 @@ static PetscErrorCode SplitAreas(const ProxySurface *s, const ProxyGeometry *g, 
     }
     for (PetscInt q = begin; q < *n_parts; q++) (*parts)[q].part /= (PetscReal)m2;
   }
-  PetscCall(PetscFree(owner));
+  sampling->piece_start = first;
+  sampling->piece_owner = owner;
   PetscCall(PointGridDestroy(&grid));
-  PetscCall(PetscFree2(x, first));
+  PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* mean height above proxy b's osculating surface of a piece of triangle t: its corners are PieceCentre's + d/m, edge midpoints integrate
+   quadratics exactly */
+static double PieceHeight(const ProxySurface *s, const PetscReal x[], PetscInt t, const PetscReal centre[3], PetscInt m, const ProxyPoint *b)
+{
+  double sum = 0.0;
+
+  for (int k = 0; k < 3; k++) { // midpoints lie a sixth of the piece's size towards the corners
+    PetscReal w[3] = {centre[0] + 1.0/(6.0*m), centre[1] + 1.0/(6.0*m), centre[2] + 1.0/(6.0*m)};
+    double    p[3], r[3], tangent[3], grad[3];
+    w[k] -= 0.5/m;
+    PointOf(s, x, t, w, p);
+    Sub3(p, b->x, r);
+    const double z0 = Dot3(b->n, r);
+    for (int d = 0; d < 3; d++) tangent[d] = r[d] - z0*b->n[d];
+    sum += ProxyHeight(b, z0, tangent, grad)/3.0;
+  }
+  return sum;
+}
+
+/* Height of the surface that each proxy stands for above its osculating surface: a facetted ball lies inside the ball of its vertices,
+   and it is the facets that displace the fluid. points[] need position (on the surface), normal and shape. */
+void ProxyOffsets(const ProxySurface *s, const ProxyGeometry *g, const ProxyPoint points[], ProxySampling *q)
+{
+  PetscReal *area = NULL;
+
+  if (PetscCalloc1(q->n, &area)) return;
+  for (PetscInt i = 0; i < q->n; i++) q->offset[i] = 0.0;
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    const PetscInt  m = (PetscInt)floor(sqrt((double)(q->piece_start[t + 1] - q->piece_start[t])) + 0.5);
+    const PetscReal a = g->area[t]/((PetscReal)m*m);
+    PetscInt        k = q->piece_start[t];
+    for (PetscInt i = 0; i < m; i++) {
+      for (PetscInt j = 0; j < m - i; j++) {
+        for (int down = 0; down < (i + j < m - 1 ? 2 : 1); down++) {
+          const PetscInt owner = q->piece_owner[k++];
+          PetscReal      b[3];
+          PieceCentre(m, i, j, down, b);
+          q->offset[owner] += a*PieceHeight(s, g->x, t, b, down ? -m : m, &points[owner]);
+          area[owner] += a;
+        }
+      }
+    }
+  }
+  for (PetscInt i = 0; i < q->n; i++) q->offset[i] = area[i] > 0.0 ? q->offset[i]/area[i] : 0.0;
+  (void)PetscFree(area);
 }
 
 static PetscErrorCode Store(const ProxySurface *s, const ProxyGeometry *g, const Candidates *list, PetscInt n_parts, const Part parts[],
@@ -272,7 +329,8 @@ static PetscErrorCode Store(const ProxySurface *s, const ProxyGeometry *g, const
   PetscCall(PetscMalloc6(n, &sampling->triangle, 3*n, &sampling->nodes, 3*n, &sampling->weights, n, &sampling->kappa, n, &sampling->kind, n,
                          &sampling->side));
   PetscCall(PetscMalloc3(n + 2, &sampling->part_start, n_parts, &sampling->part_triangle, n_parts, &sampling->part));
-  PetscCall(PetscMalloc3(s->n_triangles, &sampling->area0, s->n_edges, &sampling->edge0, 3*s->n_nodes, &sampling->x));
+  PetscCall(PetscMalloc4(s->n_triangles, &sampling->area0, s->n_edges, &sampling->edge0, 3*s->n_nodes, &sampling->x, n, &sampling->offset));
+  PetscCall(PetscArrayzero(sampling->offset, n));
   for (PetscInt i = 0; i < n; i++) {
     const Candidate *c = &list->c[i];
     sampling->triangle[i] = c->triangle;
@@ -322,7 +380,7 @@ PetscErrorCode ProxySample(const ProxySurface *s, const ProxyGeometry *g, const 
   PetscCall(AddVerticesAndEdges(s, g->x, fluid->h, node, edge, &list));
   PetscCall(AddInteriors(s, g, fluid->h, triangle, &list));
   PetscCall(Thin(s, g, fluid->h, &list));
-  PetscCall(SplitAreas(s, g, fluid->h, triangle, &list, &n_parts, &parts));
+  PetscCall(SplitAreas(s, g, fluid->h, triangle, &list, sampling, &n_parts, &parts));
   PetscCall(Store(s, g, &list, n_parts, parts, sampling));
   PetscCall(PetscFree(parts));
   PetscCall(PetscFree(list.c));
@@ -335,7 +393,9 @@ PetscErrorCode ProxySamplingDestroy(ProxySampling *p)
   PetscFunctionBegin;
   PetscCall(PetscFree6(p->triangle, p->nodes, p->weights, p->kappa, p->kind, p->side));
   PetscCall(PetscFree3(p->part_start, p->part_triangle, p->part));
-  PetscCall(PetscFree3(p->area0, p->edge0, p->x));
+  PetscCall(PetscFree4(p->area0, p->edge0, p->x, p->offset));
+  PetscCall(PetscFree(p->piece_start));
+  PetscCall(PetscFree(p->piece_owner));
   PetscCall(PetscMemzero(p, sizeof(*p)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
