@@ -18,9 +18,7 @@ endfunction()
 byssus_script(statuses test.cli.sample)
 byssus_script(layout byssus_program)
 byssus_script(program byssus_program)
-if(TARGET proxy AND TARGET coupler)
-  byssus_test(unit/scene/test_schema base sph tled proxy coupler)
-endif()
+byssus_test(unit/scene/test_schema base sph tled proxy coupler)
 byssus_test(fuzz/test_scene_mutations base)
 
 # results on disk
