@@ -36,7 +36,7 @@ typedef struct {
 typedef struct {
   const char *name;
   int         real_size;                                                         /* bytes of real                        */
-  int  (*Pairs)(const SPHLoops *l, double density[]);                            /* lists, gradients, sum_j m W; 1: capacity too small */
+  int  (*Pairs)(const SPHLoops *l, double density[]);                            /* lists, gradients, sum_j m W; 1: capacity too small, 2: no memory */
   void (*SetWalls)(const SPHLoops *l, const double G[]);                         /* n x 3 -> wall                        */
   void (*SetPressure)(const SPHLoops *l, const double p[], const double scale[]); /* p scale -> pressure; scale may be NULL */
   void (*SetVelocity)(const SPHLoops *l, const double v[]);                      /* n x 3 -> vector                      */

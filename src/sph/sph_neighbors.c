@@ -181,6 +181,7 @@ static PetscErrorCode AllocateList(SPH sph, int capacity)
 PetscErrorCode SPHUpdateNeighbors(SPH sph)
 {
   SPHLoops *l = &sph->loops;
+  int       status;
 
   PetscFunctionBegin;
   PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
@@ -196,7 +197,10 @@ PetscErrorCode SPHUpdateNeighbors(SPH sph)
     const PetscReal q = sph->params.support;
     PetscCall(AllocateList(sph, (int)(1.4 * 4.0 / 3.0 * PETSC_PI * q * q * q) + 4));
   }
-  while (sph->table->Pairs(l, sph->rho_pairs)) PetscCall(AllocateList(sph, l->capacity + l->capacity / 2));
+  while ((status = sph->table->Pairs(l, sph->rho_pairs))) {
+    PetscCheck(status == 1, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the candidates of a neighbour search");
+    PetscCall(AllocateList(sph, l->capacity + l->capacity / 2));
+  }
   PetscCall(SPHFindPlanes_Internal(sph));
   sph->n_surfaces = 0;
   sph->contacts   = NULL;

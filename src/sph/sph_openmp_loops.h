@@ -6,6 +6,9 @@
    A pair is handled four components wide; four accumulators hide the latency of the sum and fix its order. */
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "sph_loops.h"
 #include "sph_pair.h"
@@ -17,43 +20,86 @@ typedef real Vec4 __attribute__((vector_size(4 * sizeof(real)), aligned(sizeof(r
 #define SQRT(a) (sizeof(real) == sizeof(float) ? (real)sqrtf((float)(a)) : (real)sqrt((double)(a)))
 #define BLOCK 64 /* candidates or pairs that are handled at a time: a multiple of every vector length */
 
+/* byte of the lowest bit, as it lies in memory */
+static inline int FirstByte(uint64_t flags)
+{
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+  return __builtin_ctzll(flags) >> 3;
+#else
+  return 7 - (__builtin_ctzll(flags) >> 3);
+#endif
+}
+
 static inline Vec4 Load4(const real *a) { return *(const Vec4 *)a; }
 static inline void Store4(real *a, Vec4 v) { *(Vec4 *)a = v; }
 
 static int Chunks(const SPHLoops *l) { return (l->n + SPH_PAIR_CHUNK - 1) / SPH_PAIR_CHUNK; }
 static int ChunkEnd(const SPHLoops *l, int c) { return (c + 1) * SPH_PAIR_CHUNK < l->n ? (c + 1) * SPH_PAIR_CHUNK : l->n; }
 
-/* append those of particles [from, to) that are within h of particle i, seen through the periodic shift; i itself is skipped */
-static int Collect(const SPHLoops *l, int i, const real shift[3], int from, int to, int *list)
+/* candidates: the particles of the 27 cells around one cell, moved to the nearest periodic image; all particles of the cell share them */
+typedef struct {
+  int            n, allocated; /* allocated is a multiple of BLOCK */
+  real          *x, *y, *z;    /* from the grid's corner           */
+  int           *index;
+  unsigned char *near;         /* one flag each                    */
+  int            cell;
+} Candidates;
+
+static void FreeCandidates(Candidates *c)
 {
-  const real *x = (const real *)l->near_x, *y = x + l->n, *z = y + l->n, h2 = (real)(l->h * l->h);
-  const real  xi = x[i], yi = y[i], zi = z[i], sx = shift[0], sy = shift[1], sz = shift[2];
-  int         n = 0;
-
-  for (int first = from; first < to; first += BLOCK) {
-    const int m = to - first < BLOCK ? to - first : BLOCK;
-    real      r2[BLOCK];
-
-#pragma omp simd
-    for (int k = 0; k < m; k++) {
-      const real dx = (xi - x[first + k]) + sx, dy = (yi - y[first + k]) + sy, dz = (zi - z[first + k]) + sz;
-      r2[k] = dx*dx + dy*dy + dz*dz;
-    }
-    for (int k = 0; k < m; k++) {
-      list[n] = first + k;
-      n += r2[k] < h2 && first + k != i;
-    }
-  }
-  return n;
+  free(c->x);
+  free(c->index);
+  free(c->near);
 }
 
-/* neighbours of particle i from the 27 cells around its own; -1 when the slots [at, end) do not suffice */
-static int Search(const SPHLoops *l, int i, int at, int end)
+/* room for n more; 0 when there is no memory */
+static int Reserve(Candidates *c, int n)
 {
-  const SPHGrid *g = &l->grid;
-  const int      c = l->cell[i], cx = c % g->n[0], cy = (c / g->n[0]) % g->n[1], cz = c / (g->n[0] * g->n[1]);
-  int            n = 0;
+  real *x;
 
+  if (c->n + n + BLOCK <= c->allocated) return 1;
+  const int allocated = (2 * (c->n + n) + 16 * BLOCK) / BLOCK * BLOCK;
+
+  x = (real *)malloc(3 * sizeof(real) * (size_t)allocated);
+  if (!x) return 0;
+  for (int k = 0; k < c->n; k++) {
+    x[k]                 = c->x[k];
+    x[allocated + k]     = c->y[k];
+    x[2 * allocated + k] = c->z[k];
+  }
+  free(c->x);
+  c->x         = x;
+  c->y         = x + allocated;
+  c->z         = x + 2 * allocated;
+  c->index     = (int *)realloc(c->index, sizeof(int) * (size_t)allocated);
+  c->near      = (unsigned char *)realloc(c->near, (size_t)allocated);
+  c->allocated = allocated;
+  return c->index && c->near;
+}
+
+/* candidates of particles [from, to) seen through a periodic shift */
+static int Append(const SPHLoops *l, Candidates *c, const real shift[3], int from, int to)
+{
+  const real *x = (const real *)l->near_x, *y = x + l->n, *z = y + l->n;
+
+  if (!Reserve(c, to - from)) return 0;
+  for (int j = from; j < to; j++, c->n++) {
+    c->x[c->n]     = x[j] - shift[0];
+    c->y[c->n]     = y[j] - shift[1];
+    c->z[c->n]     = z[j] - shift[2];
+    c->index[c->n] = j;
+  }
+  return 1;
+}
+
+/* candidates of the particles of a cell; 0 when there is no memory */
+static int Gather(const SPHLoops *l, int cell, Candidates *c)
+{
+  const SPHGrid *g  = &l->grid;
+  const int      cx = cell % g->n[0], cy = (cell / g->n[0]) % g->n[1], cz = cell / (g->n[0] * g->n[1]);
+
+  c->n    = 0;
+  c->cell = cell;
   for (int dz = -1; dz <= 1; dz++) {
     for (int dy = -1; dy <= 1; dy++) {
       int  row[3] = {cx - 1, cy + dy, cz + dz}, outside = 0;
@@ -68,19 +114,47 @@ static int Search(const SPHLoops *l, int i, int at, int end)
       if (outside) continue;
 
       // the three cells along x are one range of particles, or two where the row wraps around
-      const int base = g->n[0] * (row[1] + g->n[1] * row[2]);
-      const int lo = cx > 0 ? cx - 1 : 0, hi = cx + 1 < g->n[0] ? cx + 1 : g->n[0] - 1;
-      const int ranges[3][3] = {
-        {lo, hi, 0}, {g->n[0] - 1, g->n[0] - 1, cx == 0 && g->periodic[0] ? 1 : 2}, {0, 0, cx == g->n[0] - 1 && g->periodic[0] ? -1 : 2}
-      };
-      for (int part = 0; part < 3; part++) {
-        if (ranges[part][2] == 2) continue;
-        const int from = g->start[base + ranges[part][0]], to = g->start[base + ranges[part][1] + 1];
+      const int base = g->n[0] * (row[1] + g->n[1] * row[2]), last = g->n[0] - 1;
+      const int lo = cx > 0 ? cx - 1 : 0, hi = cx < last ? cx + 1 : last;
 
-        shift[0] = (real)(ranges[part][2] * g->period[0]);
-        if (at + n + (to - from) >= end) return -1;
-        n += Collect(l, i, shift, from, to, l->neighbour + at + n);
+      if (!Append(l, c, shift, g->start[base + lo], g->start[base + hi + 1])) return 0;
+      if (g->periodic[0] && cx == 0) {
+        shift[0] = (real)g->period[0];
+        if (!Append(l, c, shift, g->start[base + last], g->start[base + last + 1])) return 0;
       }
+      if (g->periodic[0] && cx == last) {
+        shift[0] = -(real)g->period[0];
+        if (!Append(l, c, shift, g->start[base], g->start[base + 1])) return 0;
+      }
+    }
+  }
+  return 1;
+}
+
+/* list[] = candidates within h of particle i, without i; returns how many, or -1 when there are more than `room` */
+static int Collect(const SPHLoops *l, const Candidates *c, int i, int *list, int room)
+{
+  const real    *x = (const real *)l->near_x, h2 = (real)(l->h * l->h), xi = x[i], yi = x[l->n + i], zi = x[2 * l->n + i];
+  const real    *cx = c->x, *cy = c->y, *cz = c->z;
+  unsigned char *near = c->near;
+  int            n = 0;
+
+  // whole vectors: what lies beyond the last candidate is cleared below
+#pragma omp simd
+  for (int k = 0; k < ((c->n + 15) & ~15); k++) {
+    const real dx = xi - cx[k], dy = yi - cy[k], dz = zi - cz[k];
+    near[k] = dx*dx + dy*dy + dz*dz < h2;
+  }
+  for (int k = c->n; k < ((c->n + 7) & ~7); k++) near[k] = 0;
+
+  // one in seven is near: look at eight flags at a time
+  for (int k = 0; k < c->n; k += 8) {
+    uint64_t flags;
+    memcpy(&flags, near + k, 8);
+    if (n + 8 > room) return -1;
+    for (; flags; flags &= flags - 1) {
+      const int j = c->index[k + FirstByte(flags)];
+      if (j != i) list[n++] = j;
     }
   }
   return n;
@@ -95,7 +169,7 @@ static double Gradients(const SPHLoops *l, int i, int at, int n)
   double     density = (double)SPHPairDensity(l->kernel, mass, 0, h);
 
   for (int first = 0; first < n; first += BLOCK) {
-    const int m = n - first < BLOCK ? n - first : BLOCK;
+    const int m = n - first < BLOCK ? n - first : BLOCK, whole = (m + 15) & ~15; // whole vectors
     real      d[3][BLOCK], f[BLOCK], w[BLOCK];
 
     for (int k = 0; k < m; k++) {
@@ -105,9 +179,9 @@ static double Gradients(const SPHLoops *l, int i, int at, int n)
         d[a][k] = (real)dx;
       }
     }
-    for (int k = m; k < BLOCK; k++) d[0][k] = d[1][k] = d[2][k] = h;
+    for (int k = m; k < whole; k++) d[0][k] = d[1][k] = d[2][k] = h;
 #pragma omp simd
-    for (int k = 0; k < BLOCK; k++) {
+    for (int k = 0; k < whole; k++) {
       const real r = SQRT(d[0][k]*d[0][k] + d[1][k]*d[1][k] + d[2][k]*d[2][k]);
       f[k] = SPHPairGradient(l->kernel, mass, r, h);
       w[k] = SPHPairDensity(l->kernel, mass, r, h);
@@ -128,22 +202,32 @@ static int Pairs(const SPHLoops *l, double density[])
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < l->n; i++)
     for (int a = 0; a < 3; a++) x[a*l->n + i] = (real)(l->x[3*i + a] - l->grid.lo[a]);
-#pragma omp parallel for schedule(dynamic, 1) reduction(|| : failed)
-  for (int c = 0; c < Chunks(l); c++) {
-    const int end = (c + 1) * SPH_PAIR_CHUNK * l->capacity;
-    int       at = c * SPH_PAIR_CHUNK * l->capacity;
+#pragma omp parallel reduction(max : failed)
+  {
+    Candidates candidates = {0, 0, NULL, NULL, NULL, NULL, NULL, -1};
 
-    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
-      const int n = Search(l, i, at, end);
-      if (n < 0) {
-        failed = 1;
-        break;
+#pragma omp for schedule(dynamic, 1)
+    for (int c = 0; c < Chunks(l); c++) {
+      const int end = (c + 1) * SPH_PAIR_CHUNK * l->capacity;
+      int       at = c * SPH_PAIR_CHUNK * l->capacity;
+
+      for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+        if (l->cell[i] != candidates.cell && !Gather(l, l->cell[i], &candidates)) {
+          failed = 2;
+          break;
+        }
+        const int n = Collect(l, &candidates, i, l->neighbour + at, end - at);
+        if (n < 0) {
+          failed = failed > 1 ? failed : 1;
+          break;
+        }
+        l->start[i] = at;
+        l->count[i] = n;
+        density[i] = Gradients(l, i, at, n);
+        at += n;
       }
-      l->start[i] = at;
-      l->count[i] = n;
-      density[i] = Gradients(l, i, at, n);
-      at += n;
     }
+    FreeCandidates(&candidates);
   }
   return failed;
 }
