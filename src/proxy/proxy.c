@@ -99,9 +99,10 @@ static PetscErrorCode Reserve(Proxy p, PetscInt n)
 {
   PetscFunctionBegin;
   if (n <= p->capacity) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree6(p->points, p->x, p->normal, p->area, p->velocity, p->force));
+  PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
   p->capacity = n + n/4;
-  PetscCall(PetscMalloc6(p->capacity, &p->points, 3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity, &p->force));
+  PetscCall(PetscMalloc7(p->capacity, &p->points, 3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity,
+                         &p->force, 3*p->capacity, &p->centre));
   PetscCall(PetscArrayzero(p->force, 3*p->capacity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,10 +125,14 @@ static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
   l = Norm3(n);
   for (int k = 0; k < 3; k++) n[k] = l > 0.0 ? n[k]/l : g->normal[3*t + k];
 
-  // shape operator: mean over the part of the surface that the proxy stands for
+  // shape operator and centre: means over the part of the surface that the proxy stands for
+  double centre[3] = {0};
   for (PetscInt k = q->part_start[i]; k < q->part_start[i + 1]; k++) {
     const double a = q->part[k]*g->area[q->part_triangle[k]];
     area += a;
+    for (int c = 0; c < 3; c++) {
+      for (int d = 0; d < 3; d++) centre[d] += a/3.0*g->x[3*s->triangles[3*q->part_triangle[k] + c] + d];
+    }
     ProxyShapeAddTurned(&g->shape[6*q->part_triangle[k]], &g->normal[3*q->part_triangle[k]], n, a, S);
   }
   if (area > 0.0) {
@@ -138,6 +143,7 @@ static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
   ProxyShapeBound(PROXY_CURVATURE/p->fluid.h, S);
 
   for (int k = 0; k < 3; k++) {
+    p->centre[3*i + k] = area > 0.0 ? centre[k]/area : x[k];
     p->x[3*i + k]      = b->x[k] = x[k];
     p->normal[3*i + k] = b->n[k] = n[k];
   }
@@ -427,7 +433,7 @@ PetscErrorCode ProxyDestroy(Proxy *proxy)
   PetscCall(ProxyGeometryDestroy(&p->geometry));
   PetscCall(ProxySamplingDestroy(&p->sampling));
   PetscCall(ProxyContactsDestroy(p));
-  PetscCall(PetscFree6(p->points, p->x, p->normal, p->area, p->velocity, p->force));
+  PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
   PetscCall(PetscFree(p->node_velocity));
   PetscCall(PetscFree(p->node_weight));
   PetscCall(PetscHeaderDestroy(&p));

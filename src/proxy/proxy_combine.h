@@ -27,7 +27,7 @@ typedef struct {
   double lambda, grad_lambda[3];     /* [1], [1/m]                                       */
   double z, grad_z[3];               /* height [m]                                       */
   double n[3], grad_n[9];            /* mean normal, not normalised                      */
-  double foot[3];                    /* [m], relative to the particle                    */
+  double foot[3];                    /* [m], mean centre of the surface, from the particle */
   double coverage, grad_coverage[3]; /* sum of A w: 1 inside a patch, 1/2 on its border  */
   int    open;                       /* the patch has an open border                     */
 } ProxyPatchValue;

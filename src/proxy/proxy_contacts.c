@@ -223,7 +223,7 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
       gz[k] += q->grad_w[k]*q->z + q->w*q->grad_z[k];
       m[k] += q->w*b->n[k];
       for (int j = 0; j < 3; j++) gm[3*k + j] += b->n[k]*q->grad_w[j];
-      f[k] += q->w*(b->x[k] + shift[k] - x[k]);
+      f[k] += q->w*(p->centre[3*touch[i].proxy + k] + shift[k] - x[k]);
       v->grad_coverage[k] += q->grad_cover[k];
     }
   }

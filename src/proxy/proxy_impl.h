@@ -89,6 +89,7 @@ struct _p_Proxy {
   PetscInt      capacity;       /* of the arrays by proxy                                                  */
   ProxyPoint   *points;         /* n                                                                       */
   PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
+  PetscReal    *centre;         /* n x 3 [m], middle of the triangles that each stands for: always inside its patch */
   PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */
   PetscReal    *node_weight;    /* n_nodes: nodal share of proxy area [m^2]                                */
   SPHContacts   contacts;
