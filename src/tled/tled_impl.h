@@ -10,7 +10,7 @@
 #define TLED_BLOCK_TETS      256 /* elements of a block at most: its gradients and nodes stay in a core's L1/L2 cache */
 #define TLED_BLOCK_NODES     256 /* nodes of a block at most                                                       */
 #define TLED_CHUNK           128 /* nodes whose contributions to a sum are added first, for any number of threads  */
-#define TLED_THREAD_BLOCKS   4   /* blocks that make one more thread worth its barriers                              */
+#define TLED_THREAD_BLOCKS   12  /* blocks that make one more thread worth its barriers, also on a busy machine       */
 #define TLED_MESSAGE         512 /* characters of a breakdown message                                              */
 
 /* A named physical group of the mesh file. */

@@ -7,6 +7,9 @@
 
 #define L TLED_LANES
 
+/* inlined without question: a vector loop has no calls, and constants handed in (the law) fold away */
+#define INLINE static inline __attribute__((always_inline))
+
 /* what a block works on: its nodes' values as structures of arrays, its forces with a padded row per node */
 typedef struct {
   double u[3][TLED_BLOCK_NODES];
@@ -30,13 +33,21 @@ static void LoadNodes(const TLEDBlocks *b, int block, const double u[], Scratch 
   }
 }
 
-/* displacement gradient and J - 1 of each lane; returns how many lanes are broken (det F <= 0 or NaN) */
+/* how many lanes are broken: det F <= 0 or NaN */
+INLINE int CountBroken(const double jm1[])
+{
+  int broken = 0;
+
+  for (int l = 0; l < L; l++) broken += !(jm1[l] > -1.0);
+  return broken;
+}
+
+/* displacement gradient and J - 1 of each lane; returns how many lanes are broken */
 static int PackGradients(const int local[], const double G[], const Scratch *s, Pack *p)
 {
   const int *n0 = local, *n1 = local + L, *n2 = local + 2*L, *n3 = local + 3*L;
-  int        broken = 0;
 
-#pragma omp simd reduction(+ : broken)
+#pragma omp simd /* gathers: worth it here, though the compiler's cost model thinks not */
   for (int l = 0; l < L; l++) {
     const double x = s->u[0][n0[l]], y = s->u[1][n0[l]], z = s->u[2][n0[l]];
     const double d[9] = {s->u[0][n1[l]] - x, s->u[1][n1[l]] - y, s->u[2][n1[l]] - z, s->u[0][n2[l]] - x, s->u[1][n2[l]] - y,
@@ -45,26 +56,21 @@ static int PackGradients(const int local[], const double G[], const Scratch *s, 
     double       H[9];
     TLEDDisplacementGradient(d, g, H);
     p->jm1[l] = TLEDJacobianMinusOne(H);
-    broken += !(p->jm1[l] > -1.0);
     p->H[0][l] = H[0]; p->H[1][l] = H[1]; p->H[2][l] = H[2];
     p->H[3][l] = H[3]; p->H[4][l] = H[4]; p->H[5][l] = H[5];
     p->H[6][l] = H[6]; p->H[7][l] = H[7]; p->H[8][l] = H[8];
   }
-  return broken;
+  return CountBroken(p->jm1);
 }
 
 /* ln J of each lane: a series for all at once where it holds, as it nearly always does */
 static void PackLogarithms(const double jm1[], double ln_J[])
 {
-  double reach = 0.0;
+  int far = 0;
 
-#pragma omp simd reduction(max : reach)
-  for (int l = 0; l < L; l++) {
-    const double r = fabs(jm1[l]);
-    reach = r > reach ? r : reach;
-  }
-  if (reach <= TLED_LOG_REACH) {
-#pragma omp simd
+  for (int l = 0; l < L; l++) far += !(fabs(jm1[l]) <= TLED_LOG_REACH);
+  if (!far) {
+#pragma GCC ivdep
     for (int l = 0; l < L; l++) ln_J[l] = TLEDLogSeries(jm1[l]);
   } else {
     for (int l = 0; l < L; l++) ln_J[l] = TLEDLogJacobian(jm1[l]);
@@ -72,7 +78,7 @@ static void PackLogarithms(const double jm1[], double ln_J[])
 }
 
 /* nodal forces of each lane, f[3 a + i] of the nodes a = 1, 2, 3 in rows 3 to 11, of node 0 in rows 0 to 2 */
-static void StoreForces(const double P[9], const double G[], const double V0[], int l, double f[12][L])
+INLINE void StoreForces(const double P[9], const double G[], const double V0[], int l, double f[12][L])
 {
   const double g[9] = {G[l], G[L + l], G[2*L + l], G[3*L + l], G[4*L + l], G[5*L + l], G[6*L + l], G[7*L + l], G[8*L + l]};
   double       n[9];
@@ -84,31 +90,20 @@ static void StoreForces(const double P[9], const double G[], const double V0[], 
   f[9][l] = n[6]; f[10][l] = n[7]; f[11][l] = n[8];
 }
 
-static void LaneGradient(const Pack *p, int l, double H[9])
+INLINE void LaneGradient(const Pack *p, int l, double H[9])
 {
   H[0] = p->H[0][l]; H[1] = p->H[1][l]; H[2] = p->H[2][l];
   H[3] = p->H[3][l]; H[4] = p->H[4][l]; H[5] = p->H[5][l];
   H[6] = p->H[6][l]; H[7] = p->H[7][l]; H[8] = p->H[8][l];
 }
 
-static void PackForcesNeoHookean(const Pack *p, const double G[], const double V0[], double mu, double lambda, double f[12][L])
+INLINE void PackForces(int law, const Pack *p, const double G[], const double V0[], double mu, double lambda, double f[12][L])
 {
-#pragma omp simd
+#pragma GCC ivdep
   for (int l = 0; l < L; l++) {
     double H[9], P[9];
     LaneGradient(p, l, H);
-    TLEDStressNeoHookean(H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), mu, lambda, P);
-    StoreForces(P, G, V0, l, f);
-  }
-}
-
-static void PackForcesStVenantKirchhoff(const Pack *p, const double G[], const double V0[], double mu, double lambda, double f[12][L])
-{
-#pragma omp simd
-  for (int l = 0; l < L; l++) {
-    double H[9], P[9];
-    LaneGradient(p, l, H);
-    TLEDStressStVenantKirchhoff(H, mu, lambda, P);
+    TLEDStress(law, H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), mu, lambda, P);
     StoreForces(P, G, V0, l, f);
   }
 }
@@ -160,8 +155,8 @@ static void ForcesT4(const TLEDLoops *w, const double u[])
       broken += PackGradients(local, G, &s, &p);
       if (w->law == TLED_LAW_NEO_HOOKEAN) {
         PackLogarithms(p.jm1, p.ln_J);
-        PackForcesNeoHookean(&p, G, V0, w->mu, w->lambda, f);
-      } else PackForcesStVenantKirchhoff(&p, G, V0, w->mu, w->lambda, f);
+        PackForces(TLED_LAW_NEO_HOOKEAN, &p, G, V0, w->mu, w->lambda, f);
+      } else PackForces(TLED_LAW_ST_VENANT_KIRCHHOFF, &p, G, V0, w->mu, w->lambda, f);
       AddForces(local, f, &s);
     }
     StoreBlock(b, block, &s, w->partial);
@@ -211,7 +206,7 @@ void TLEDNodalVolumes_OpenMP(const TLEDLoops *w, const double u[])
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
       broken += PackGradients(b->local + 4*L*pack, b->G + 9*L*pack, &s, &p);
-#pragma omp simd
+#pragma GCC ivdep
       for (int l = 0; l < L; l++) dV[l] = b->V0[L*pack + l]*p.jm1[l];
       AddValues(b->local + 4*L*pack, dV, &s);
     }
@@ -224,37 +219,35 @@ void TLEDNodalVolumes_OpenMP(const TLEDLoops *w, const double u[])
 /* sum over the corners of each lane */
 static void PackSum(const int local[], const double value[], double factor, double sum[])
 {
-#pragma omp simd
+#pragma GCC ivdep
   for (int l = 0; l < L; l++) sum[l] = factor*((value[local[l]] + value[local[L + l]]) + (value[local[2*L + l]] + value[local[3*L + l]]));
 }
 
-/* stress of the averaged gradient: pbar of each lane, and when `f` is given the forces with the nodal pressures p of the lanes */
-static void PackAverage(const TLEDLoops *w, const Pack *p, const double jbar[], const double nodal[], const double G[], const double V0[], double pbar[], double f[12][L])
+/* Stress of the averaged gradient: V0 pbar of each lane or, with `forces`, the forces with the nodal pressures of the lanes. ln_Jbar is used
+   by the laws that need it. */
+INLINE void PackAverage(int law, int forces, const TLEDLoops *w, const Pack *p, const double jbar[], const double nodal[], const double G[], const double V0[], double pbar[], double f[12][L])
 {
-  const int    law = w->law;
   const double mu = w->mu, lambda = w->lambda;
-  double       ln_J[L];
+  double       ln_Jbar[L] = {0.0};
 
-  if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(jbar, ln_J);
-#pragma omp simd
+  if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(jbar, ln_Jbar);
+#pragma GCC ivdep
   for (int l = 0; l < L; l++) {
     const double Jbar = 1.0 + jbar[l], inv_J = 1.0 / (1.0 + p->jm1[l]);
     double       H[9], Hbar[9], P[9];
     LaneGradient(p, l, H);
     const double r = TLEDAverageGradient(H, inv_J, Jbar, Hbar);
-    if (law == TLED_LAW_NEO_HOOKEAN) TLEDStressNeoHookean(Hbar, ln_J[l], 1.0 / Jbar, mu, lambda, P);
-    else TLEDStressStVenantKirchhoff(Hbar, mu, lambda, P);
+    TLEDStress(law, Hbar, ln_Jbar[l], 1.0 / Jbar, mu, lambda, P);
     const double q = TLEDAveragePressure(Hbar, P, Jbar);
-    pbar[l] = q*V0[l];
-    if (f) {
+    if (forces) {
       TLEDAverageStress(H, r, inv_J, Jbar, q, nodal[l], P);
       StoreForces(P, G, V0, l, f);
-    }
+    } else pbar[l] = q*V0[l];
   }
 }
 
 /* one pass of the average nodal pressure element: the pressures that elements pass to their nodes, or the forces */
-static void PassAverage(const TLEDLoops *w, const double u[], int forces)
+INLINE void PassAverage(int law, int forces, const TLEDLoops *w, const double u[])
 {
   const TLEDBlocks *b = w->blocks;
 
@@ -274,10 +267,10 @@ static void PassAverage(const TLEDLoops *w, const double u[], int forces)
       PackSum(local, s.value[0], 0.25, jbar);
       if (forces) {
         PackSum(local, s.value[1], 1.0, nodal);
-        PackAverage(w, &p, jbar, nodal, G, V0, pbar, f);
+        PackAverage(law, 1, w, &p, jbar, nodal, G, V0, pbar, f);
         AddForces(local, f, &s);
       } else {
-        PackAverage(w, &p, jbar, NULL, G, V0, pbar, NULL);
+        PackAverage(law, 0, w, &p, jbar, nodal, G, V0, pbar, f);
         AddValues(local, pbar, &s);
       }
     }
@@ -298,9 +291,11 @@ void TLEDElementForces_OpenMP(const TLEDLoops *w, const double u[])
 {
   if (w->anp) {
     TLEDNodalVolumes_OpenMP(w, u);
-    PassAverage(w, u, 0);
+    if (w->law == TLED_LAW_NEO_HOOKEAN) PassAverage(TLED_LAW_NEO_HOOKEAN, 0, w, u);
+    else PassAverage(TLED_LAW_ST_VENANT_KIRCHHOFF, 0, w, u);
     GatherAverage(w, 0.25, w->pressure);
-    PassAverage(w, u, 1);
+    if (w->law == TLED_LAW_NEO_HOOKEAN) PassAverage(TLED_LAW_NEO_HOOKEAN, 1, w, u);
+    else PassAverage(TLED_LAW_ST_VENANT_KIRCHHOFF, 1, w, u);
   } else ForcesT4(w, u);
 }
 
