@@ -5,6 +5,7 @@
 
 #include <petscviewer.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -130,6 +131,8 @@ int main(int argc, char *argv[])
   if (!command->run) return Plot(argv);
   if (command->run != Info && argv[2][0] == '-') return Usage();
 
+  /* without mpirun MPI is one process by itself: no helper daemon, and Ctrl-C and limits on files reach nobody else */
+  if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMIX_RANK")) setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   if (PetscInitialize(&all, &words, NULL, NULL)) return BY_EXIT_FAILURE;
   result = command->run(argc - 2, argv + 2);
 

@@ -18,6 +18,7 @@ endfunction()
 byssus_script(statuses test.cli.sample)
 byssus_script(layout byssus_program)
 byssus_script(program byssus_program)
+byssus_script(bad_input byssus_program)
 byssus_test(unit/scene/test_schema base sph tled proxy coupler)
 byssus_test(fuzz/test_scene_mutations base)
 

@@ -1,0 +1,134 @@
+"""What the reader of scenes cannot see: meshes, water and bodies that do not fit, places that cannot be written, broken checkpoints.
+Each ends with its status and a message that names the key and what is wrong, never with a traceback."""
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.environ["BYSSUS"]
+
+SCENE = """\
+run: {end: 0.01, directory: out}
+domain: {min: [0, 0, 0], max: [0.4, 0.2, 0.4], walls: [xmin, xmax, ymin, ymax, zmin]}
+gravity: [0, 0, -9.81]
+sph:
+  spacing: 0.05
+  fill: [water]
+  water: {min: [0, 0, 0], max: [0.2, 0.2, 0.2]}
+bodies: [block]
+block: {mesh: block.msh, density: 1000, young: 1e5, fixed: [root], translate: [0.3, 0.1, 0.2]}
+"""
+
+# one tetrahedron; its first face is the group root, the others are the group skin
+NODES = [(0, 0, 0), (0.05, 0, 0), (0, 0.05, 0), (0, 0, 0.05)]
+TRIANGLES = [(1, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)]
+
+
+def mesh(tetrahedra):
+    """gmsh 2.2 text with one tetrahedron or none"""
+    elements = [f"2 2 {1 if i == 0 else 2} {1 if i == 0 else 2} {a} {b} {c}" for i, (a, b, c) in enumerate(TRIANGLES)] + [f"4 2 3 3 {a} {b} {c} {d}" for a, b, c, d in tetrahedra]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "3", '2 1 "root"', '2 2 "skin"', '3 3 "volume"', "$EndPhysicalNames"]
+    lines += ["$Nodes", str(len(NODES))] + [f"{i + 1} {x} {y} {z}" for i, (x, y, z) in enumerate(NODES)] + ["$EndNodes"]
+    lines += ["$Elements", str(len(elements))] + [f"{i + 1} {e}" for i, e in enumerate(elements)] + ["$EndElements", ""]
+    return "\n".join(lines)
+
+
+GOOD, INVERTED, SURFACE = mesh([(1, 2, 3, 4)]), mesh([(1, 3, 2, 4)]), mesh([])
+
+# name, mesh, text to replace, by what, status, fragments of stderr
+CASES = [
+    ("good", GOOD, "", "", 0, []),
+    ("no such group", GOOD, "[root]", "[rot]", 2, [":9: block.fixed", "rot", "root"]),
+    ("a mesh of triangles only", SURFACE, "", "", 2, [":9: block.mesh", "tetrahedra"]),
+    ("an inverted element", INVERTED, "", "", 2, [":9: block.mesh", "block.msh"]),
+    ("not a mesh", "hello\n", "", "", 2, [":9: block.mesh"]),
+    ("a mesh that ends early", GOOD[:len(GOOD) // 2], "", "", 2, [":9: block.mesh"]),
+    ("no water in the box", GOOD, "max: [0.2, 0.2, 0.2]", "max: [0.0, 0.2, 0.2]", 2, ["sph"]),
+    ("water outside of the domain", GOOD, "{min: [0, 0, 0], max: [0.2, 0.2, 0.2]}", "{min: [2, 0, 0], max: [3, 0.2, 0.2]}", 2, ["sph"]),
+    ("body outside of the domain", GOOD, "translate: [0.3, ", "translate: [3, ", 2, [":9: block"]),
+    ("domain inside out", GOOD, "max: [0.4, 0.2, 0.4]", "max: [-0.4, 0.2, 0.4]", 2, [":2: domain"]),
+    ("wall and periodic", GOOD, "walls:", "periodic: [x], walls:", 2, [":2: domain."]),
+    ("probe of an unknown body", GOOD, "bodies:", "probes: [tip]\ntip: {body: blok, quantity: displacement}\nbodies:", 2, [":9: tip.body = blok"]),
+    ("directory that cannot be made", GOOD, "directory: out", "directory: scene.yaml/out", 2, ["scene.yaml/out"]),
+    ("resume from nothing", GOOD, "", "", 2, ["resume", "none"]),
+]
+
+
+def run(directory, options=(), limit=None):
+    def restrict():
+        if limit:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    return subprocess.run([PROGRAM, "run", "scene.yaml", *options], capture_output=True, text=True, cwd=directory, preexec_fn=restrict)
+
+
+def write(directory, scene, text):
+    with open(os.path.join(directory, "block.msh"), "w") as file:
+        file.write(text)
+    with open(os.path.join(directory, "scene.yaml"), "w") as file:
+        file.write(scene)
+
+
+def report(name, done, wrong):
+    if wrong:
+        print(f"{name}: {'; '.join(wrong)}\n--- stdout\n{done.stdout[-2000:]}--- stderr\n{done.stderr[-4000:]}---")
+    return len(wrong) > 0
+
+
+def check_cases():
+    failures = 0
+    for name, text, old, new, status, fragments in CASES:
+        with tempfile.TemporaryDirectory() as directory:
+            write(directory, SCENE.replace(old, new, 1) if old else SCENE, text)
+            done = run(directory, ["-resume", "none"] if name.startswith("resume") else [])
+            wrong = [f"stderr lacks {f!r}" for f in fragments if f not in done.stderr]
+            if done.returncode != status:
+                wrong.append(f"status {done.returncode}, expected {status}")
+            if "PETSC ERROR" in done.stderr:
+                wrong.append("a traceback")
+            if status == 2 and "nothing was run" not in done.stderr:
+                wrong.append("no closing line")
+            failures += report(name, done, wrong)
+    return failures
+
+
+def check_broken_checkpoints():
+    """a checkpoint that is cut off, or is something else, names the file and ends with 2"""
+    failures = 0
+    with tempfile.TemporaryDirectory() as directory:
+        write(directory, SCENE, GOOD)
+        done = run(directory)
+        checkpoint = os.path.join(directory, "out", "checkpoint.h5")
+        if done.returncode or not os.path.exists(checkpoint):
+            return report("run to its end", done, ["no checkpoint"])
+        with open(checkpoint, "rb") as file:
+            whole = file.read()
+        for name, data in (("truncated", whole[:len(whole) // 2]), ("empty", b""), ("foreign", b"hello\n" * 100)):
+            with open(checkpoint, "wb") as file:
+                file.write(data)
+            done = run(directory, ["-resume", "out"])
+            wrong = [] if done.returncode == 2 else [f"status {done.returncode}, expected 2"]
+            if "checkpoint.h5" not in done.stderr or "PETSC ERROR" in done.stderr:
+                wrong.append("the file is not named, or a traceback")
+            failures += report(f"{name} checkpoint", done, wrong)
+    return failures
+
+
+def check_full_disk():
+    """files may grow to 16 kB only: the run ends with 1, says so, and leaves no half checkpoint"""
+    with tempfile.TemporaryDirectory() as directory:
+        write(directory, SCENE, GOOD)
+        done = run(directory, limit=16384)
+        wrong = [] if done.returncode == 1 else [f"status {done.returncode}, expected 1"]
+        if "out/" not in done.stderr or "PETSC ERROR" in done.stderr:
+            wrong.append("the file is not named, or a traceback")
+        out = os.path.join(directory, "out")
+        if not os.path.isdir(out) or [f for f in os.listdir(out) if f.startswith("checkpoint")]:
+            wrong.append("part of a checkpoint was left")
+        return report("full disk", done, wrong)
+
+
+failed = check_cases() + check_broken_checkpoints() + check_full_disk()
+print(f"{failed} failures")
+sys.exit(1 if failed else 0)
