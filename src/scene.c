@@ -199,6 +199,12 @@ PetscErrorCode SceneGetPath(Scene scene, const char *path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* text on one line, whatever it holds */
+static void WriteComment(const char text[], FILE *out)
+{
+  for (const unsigned char *c = (const unsigned char *)text; *c; c++) fputc(*c < ' ' || *c == 127 ? '?' : *c, out);
+}
+
 PetscErrorCode SceneWrite(Scene scene, const char path[])
 {
   FILE     *out;
@@ -210,9 +216,14 @@ PetscErrorCode SceneWrite(Scene scene, const char path[])
   out    = fopen(path, "w");
   failed = (PetscBool)(out == NULL);
   if (out) {
-    fprintf(out, "# as run: %s", scene->path);
-    for (PetscInt i = 0; i < scene->n_overrides; i++)
-      fprintf(out, " -%s %s", scene->overrides[i].name, scene->overrides[i].value ? scene->overrides[i].value : "");
+    fprintf(out, "# as run: ");
+    WriteComment(scene->path, out);
+    for (PetscInt i = 0; i < scene->n_overrides; i++) {
+      fprintf(out, " -");
+      WriteComment(scene->overrides[i].name, out);
+      fputc(' ', out);
+      WriteComment(scene->overrides[i].value ? scene->overrides[i].value : "", out);
+    }
     fputc('\n', out);
     PetscCall(NodeWrite(scene->root, out));
     if (ferror(out)) failed = PETSC_TRUE;

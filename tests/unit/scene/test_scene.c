@@ -67,7 +67,7 @@ static void the_command_line_wins_and_absent_sections_stay_absent(void **state)
 
 static void a_scene_as_run_reads_as_the_same_scene(void **state)
 {
-  char       *options[] = {"-sph_spacing", "0.005", "-gravity", "0,0,-1.5", "-directory", "out: a \"b\""};
+  char       *options[] = {"-sph_spacing", "0.005", "-gravity", "0,0,-1.5", "-directory", "out: a \"b\"\nc"};
   char        path[128], text[4096];
   Scene       scene, again;
   FluidParams fluid;
@@ -92,7 +92,7 @@ static void a_scene_as_run_reads_as_the_same_scene(void **state)
   assert_petsc(KeysSetDefaults(BodyKeys, &body));
   assert_petsc(KeysSetFromOptions(BodyKeys, "flap_", &body));
   assert_true(fluid.spacing == 0.005 && fluid.solver == 1 && top.gravity[2] == -1.5);
-  assert_string_equal(top.directory, "out: a \"b\"");
+  assert_string_equal(top.directory, "out: a \"b\"\nc");
   assert_int_equal(body.mesh[0], '/');
   assert_petsc(SceneDestroy(&again));
 }
