@@ -1,6 +1,6 @@
-/* bench_tled - the solid's speed, with its error beside it.
+/* bench.tled - the solid's speed, with its error beside it.
 
-     bench_tled MESH.msh [seconds]
+     bench.tled MESH.msh [seconds]
 
    For each element and law: nanoseconds per element and time step (the whole step: forces, gathering, motion), on one thread and on all,
    for `seconds` (default 2) each, by the clock and by processor time (which other programs do not lengthen); the same steps' energy error (relative to the energy that moves) as what the speed costs. Beside them
@@ -125,7 +125,7 @@ int main(int argc, char **argv)
   PetscErrorCode ierr;
 
   if (argc < 2) {
-    fprintf(stderr, "bench_tled MESH.msh [seconds]\n");
+    fprintf(stderr, "bench.tled MESH.msh [seconds]\n");
     return BY_EXIT_INPUT;
   }
   ierr = PetscInitializeNoArguments();

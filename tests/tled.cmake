@@ -10,6 +10,6 @@ byssus_test(unit/tled/test_mesh base tled)
 add_test(NAME unit.tled.solid_from_surface COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/unit/tled/test_solid_from_surface.py)
 set_tests_properties(unit.tled.solid_from_surface PROPERTIES LABELS unit TIMEOUT 300)
 
-# speed against error: not a test, built with `ninja bench_tled`
-add_executable(bench_tled EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/bench/bench_tled.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:tled>)
-target_link_libraries(bench_tled PRIVATE byssus_flags)
+# the device's loops against the CPU's; 77 = no device here
+byssus_test(backend/test_tled_cuda base tled)
+set_tests_properties(backend.tled_cuda PROPERTIES LABELS "backend;cuda" SKIP_RETURN_CODE 77)

@@ -1,6 +1,16 @@
 # the solid: total Lagrangian explicit dynamics on tetrahedra
 find_library(LAPACK_LIBRARY lapack REQUIRED) # PETSc's; the critical step calls syev
 target_link_libraries(byssus_flags INTERFACE ${LAPACK_LIBRARY})
-byssus_module(tled src/tled/tled.c src/tled/tled_keys.c src/tled/tled_gmsh.c src/tled/tled_mesh.c src/tled/tled_blocks.c
-              src/tled/tled_openmp.c src/tled/tled_energy.c src/tled/tled_critical.c src/tled/tled_time.c src/tled/tled_tangent.c
-              src/tled/tled_state.c)
+set(TLED_DEVICE "")
+if(BYSSUS_HAVE_CUDA)
+  set(TLED_DEVICE src/tled/tled_cuda.cu)
+endif()
+byssus_module(tled
+  src/tled/tled.c src/tled/tled_keys.c src/tled/tled_gmsh.c src/tled/tled_mesh.c src/tled/tled_blocks.c src/tled/tled_openmp.c
+  src/tled/tled_energy.c src/tled/tled_critical.c src/tled/tled_time.c src/tled/tled_tangent.c src/tled/tled_state.c
+  src/tled/tled_device.c ${TLED_DEVICE})
+# no floating-point status flags: comparisons vectorise; nothing is reordered
+set_source_files_properties(src/tled/tled_openmp.c PROPERTIES COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
+# speed and error of the solid alone: cmake --build build --target bench.tled
+add_executable(bench.tled EXCLUDE_FROM_ALL bench/bench_tled.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:tled>)
+target_link_libraries(bench.tled PRIVATE byssus_flags)

@@ -1,0 +1,49 @@
+/* tled_cuda.cu - the element loop on a GPU: one thread per element, then one per node. No formula here. */
+#include "tled/tled_device.h"
+#include "tled/tled_element.h"
+#include <cuda_runtime.h>
+
+#define LANES   8   /* TLED_LANES: elements side by side in the structures of arrays */
+#define THREADS 128 /* per block: enough to hide memory latency with the registers that a tetrahedron takes */
+
+static __global__ void ElementForces(int law, double mu, double lambda, int n_lanes, const int *corner, const double *G, const double *V0, const double *u, double *corner_force)
+{
+  const int l = blockIdx.x*blockDim.x + threadIdx.x, pack = l / LANES, lane = l % LANES;
+  int       n[4];
+  double    g[9], d[9], H[9], P[9], f[9];
+
+  if (l >= n_lanes) return;
+  for (int a = 0; a < 4; a++) n[a] = corner[(4*pack + a)*LANES + lane];
+  for (int k = 0; k < 9; k++) g[k] = G[(9*pack + k)*LANES + lane];
+  for (int a = 0; a < 3; a++) Sub3(&u[3*n[a + 1]], &u[3*n[0]], &d[3*a]);
+  TLEDDisplacementGradient(d, g, H);
+  const double jm1 = TLEDJacobianMinusOne(H);
+  TLEDStress(law, H, TLEDLogJacobian(jm1), 1.0 / (1.0 + jm1), mu, lambda, P);
+  TLEDNodalForces(P, g, V0[l], f);
+  for (int i = 0; i < 3; i++) corner_force[12*l + i] = -(f[i] + f[3 + i] + f[6 + i]);
+  for (int k = 0; k < 9; k++) corner_force[12*l + 3 + k] = f[k];
+}
+
+static __global__ void GatherForces(int n_nodes, const int *offset, const int *list, const double *corner_force, double *f)
+{
+  const int a = blockIdx.x*blockDim.x + threadIdx.x;
+  double    sum[3] = {0.0, 0.0, 0.0};
+
+  if (a >= n_nodes) return;
+  for (int k = offset[a]; k < offset[a + 1]; k++)
+    for (int i = 0; i < 3; i++) sum[i] += corner_force[3*list[k] + i];
+  for (int i = 0; i < 3; i++) f[3*a + i] = sum[i];
+}
+
+extern "C" int TLEDElementForces_CUDA(int law, double mu, double lambda, int n_lanes, const int corner[], const double G[], const double V0[], const double u[], double corner_force[])
+{
+  ElementForces<<<(n_lanes + THREADS - 1) / THREADS, THREADS>>>(law, mu, lambda, n_lanes, corner, G, V0, u, corner_force);
+  return (int)cudaGetLastError();
+}
+
+extern "C" int TLEDGatherForces_CUDA(int n_nodes, const int offset[], const int list[], const double corner_force[], double f[])
+{
+  GatherForces<<<(n_nodes + THREADS - 1) / THREADS, THREADS>>>(n_nodes, offset, list, corner_force, f);
+  const cudaError_t status = cudaGetLastError();
+  return (int)(status == cudaSuccess ? cudaDeviceSynchronize() : status);
+}
