@@ -6,6 +6,9 @@ byssus_test(unit/tled/test_time base tled)
 byssus_test(unit/tled/test_critical base tled)
 byssus_test(unit/tled/test_mesh base tled)
 
+# in time, against another code; prints the table of docs/verification/solid-slice.md
+byssus_test(convergence/test_tled_reference base tled)
+
 # the mesh maker, as a user calls it
 add_test(NAME unit.tled.solid_from_surface COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/unit/tled/test_solid_from_surface.py)
 set_tests_properties(unit.tled.solid_from_surface PROPERTIES LABELS unit TIMEOUT 300)
