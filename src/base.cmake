@@ -26,9 +26,9 @@ set_source_files_properties(src/backend.c PROPERTIES COMPILE_DEFINITIONS
 set_source_files_properties(src/main.c PROPERTIES COMPILE_DEFINITIONS "BYSSUS_PLOT_PATH=\"${CMAKE_SOURCE_DIR}/src/plot/plot.py\"")
 
 if(BYSSUS_SANITIZE)
-  add_library(keep_loaded STATIC tests/keep_loaded.c)
-  target_link_libraries(byssus_flags INTERFACE keep_loaded)
-  target_link_options(byssus_flags INTERFACE -Wl,-u,dlclose -Wl,--export-dynamic-symbol=dlclose)
+  add_library(keep_loaded OBJECT tests/keep_loaded.c)
+  target_link_libraries(byssus_flags INTERFACE $<TARGET_OBJECTS:keep_loaded>)
+  target_link_options(byssus_flags INTERFACE -Wl,--export-dynamic-symbol=dlclose)
 endif()
 
 # installed: the program, its plot program where main.c looks for it, the library and the public headers
