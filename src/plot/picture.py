@@ -51,6 +51,7 @@ class View:
             for series in [self.run.fluid, *self.run.bodies]:
                 if series is not None:
                     x = series.points(series.step_at(time))
+                    x = x[np.all(np.isfinite(x), axis=1)]
                     if len(x):
                         points += [x.min(axis=0), x.max(axis=0)]
         low, high = self.run.vector("domain", "min"), self.run.vector("domain", "max")
@@ -60,7 +61,8 @@ class View:
         pad = 0.03 * max(np.max(seen_high - seen_low), 1e-9)
         if low is None or high is None or np.any(high <= low):
             return seen_low - pad, seen_high + pad
-        # an empty sky is not shown
+        # what has flown far out of the tank is not followed, and an empty sky is not shown
+        seen_low, seen_high = np.maximum(seen_low, low - 0.25 * (high - low)), np.minimum(seen_high, high + 0.25 * (high - low))
         vertical = int(np.argmax(np.abs(self.up)))
         if self.up[vertical] > 0:
             high[vertical] = min(high[vertical], seen_high[vertical] + 2 * pad)
@@ -73,7 +75,7 @@ class View:
         if "velocity" not in fluid.fields:
             return None
         speeds = [np.linalg.norm(fluid.field("velocity", fluid.step_at(t)), axis=1) for t in self.sample]
-        top = max((np.percentile(s, 99) for s in speeds if len(s)), default=0.0)
+        top = max((np.percentile(s[np.isfinite(s)], 99) for s in speeds if np.any(np.isfinite(s))), default=0.0)
         return nice_top(top)
 
     def _solid_ranges(self):
@@ -81,8 +83,8 @@ class View:
         for body in self.run.bodies:
             if "displacement" not in body.fields:
                 continue
-            tops = [np.linalg.norm(body.field("displacement", body.step_at(t)), axis=1).max() for t in self.sample]
-            ranges[body.name] = max(tops, default=0.0)
+            sizes = [np.linalg.norm(body.field("displacement", body.step_at(t)), axis=1) for t in self.sample]
+            ranges[body.name] = max((np.max(s[np.isfinite(s)], initial=0.0) for s in sizes), default=0.0)
         top = nice_top(max(ranges.values(), default=0.0))
         return {name: top for name in ranges}
 
@@ -110,21 +112,27 @@ class View:
         for body in run.bodies:
             step = body.step_at(time)
             points, triangles = body.points(step), self.surfaces[body.name]
+            triangles = triangles[np.all(np.isfinite(points[triangles]), axis=(1, 2))]  # of a run that broke down
+            if not len(triangles):
+                continue
             if body.name in self.solids:
                 size = np.linalg.norm(body.field("displacement", step), axis=1)
-                colours = SOLID(size / self.solids[body.name])[:, :3]
+                colours = SOLID(np.nan_to_num(size / self.solids[body.name], nan=1.0, posinf=1.0))[:, :3]
             else:
                 colours = np.tile(OBSTACLE, (len(points), 1))
             normals = render.corner_normals(points, triangles)
             solid.triangles(points, triangles, colours, normals, gloss=0.15, edges=0.13)
             centres = points[triangles].mean(axis=1)
             edge = np.linalg.norm(points[triangles[:, 0]] - points[triangles[:, 1]], axis=1)
-            shadow.add(np.concatenate([points, centres]), 0.6 * float(np.median(edge)))
+            shadow.add(np.concatenate([points[triangles[:, 0]], centres]), 0.6 * float(np.median(edge)))
         if run.fluid:
             step = run.fluid.step_at(time)
             points = run.fluid.points(step)
+            good = np.all(np.isfinite(points), axis=1)
+            points = points[good]
             if self.speed:
-                colours = WATER(np.linalg.norm(run.fluid.field("velocity", step), axis=1) / self.speed)[:, :3]
+                speed = np.linalg.norm(run.fluid.field("velocity", step)[good], axis=1)
+                colours = WATER(np.nan_to_num(speed / self.speed, nan=1.0, posinf=1.0))[:, :3]
             else:
                 colours = np.tile(WATER(0.4)[:3], (len(points), 1))
             water = render.Layer(camera)

@@ -201,7 +201,7 @@ class Shadow:
 
     def _cells(self, points):
         seen = np.asarray(points, np.float32) @ self.axes.T.astype(np.float32)
-        index = np.clip(((seen[:, :2] - self.low[:2].astype(np.float32)) * np.float32(1 / self.step)).astype(np.int32), -1, self.size) + 1
+        index = np.clip((seen[:, :2] - self.low[:2].astype(np.float32)) * np.float32(1 / self.step), -1, self.size).astype(np.int32) + 1
         return index, seen[:, 2]
 
     def add(self, points, radius):

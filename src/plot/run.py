@@ -89,10 +89,10 @@ class Series:
             raise PlotError(f"{path} is not a series of this program or is damaged: {first_line(error)}") from None
 
     def _rows(self, name, step):
-        start = int(self.point_offset[step])
         try:
+            start = int(self.point_offset[step])
             data = self.group[name][start : start + int(self.n_points[self.part[step]])]
-        except (OSError, KeyError, ValueError) as error:
+        except (OSError, KeyError, ValueError, IndexError) as error:
             raise PlotError(f"{self.path} is damaged at {name}: {first_line(error)}") from None
         return np.asarray(data, dtype=float)
 

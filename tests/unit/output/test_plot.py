@@ -9,6 +9,7 @@ import sys
 import tempfile
 import unittest
 
+import h5py
 import matplotlib.image
 import numpy as np
 
@@ -90,6 +91,20 @@ class Plot(unittest.TestCase):
         result = plot(path)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assert_shows_something(os.path.join(path, "plots", "final.png"))
+
+    def test_a_run_that_broke_down(self):
+        path = self.copy("broken")
+        os.unlink(os.path.join(path, "ledger.csv"))
+        with h5py.File(os.path.join(path, "fluid.vtkhdf"), "r+") as file:
+            file["VTKHDF/Points"][-40:-20] = np.nan
+            file["VTKHDF/Points"][-20:] = 1e12
+            file["VTKHDF/PointData/velocity"][-60:] = np.inf
+        with h5py.File(os.path.join(path, "flap.vtkhdf"), "r+") as file:
+            file["VTKHDF/Points"][-5:] = np.nan
+            file["VTKHDF/PointData/displacement"][-5:] = np.nan
+        result = plot(path)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assert_shows_something(os.path.join(path, "plots", "final.png"), 0.1)
 
     def assert_refused(self, path, *words):
         result = plot(path)
