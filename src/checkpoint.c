@@ -1,8 +1,8 @@
 /* checkpoint.c - the full state in one HDF5 file of checksummed arrays; see checkpoint.h.
 
-   Writing goes to checkpoint.h5.new, which is synced and renamed by CheckpointCommit(): at any moment checkpoint.h5 is a whole file.
-   The attribute `complete` is written last. HDF5 1.8's format guards its own tables by checksums, and every array carries one of its
-   bytes, so that a damaged file is told from a good one. */
+   Writing goes to checkpoint.h5.new, which is synced and renamed by CheckpointCommit(): at any moment checkpoint.h5 is a whole
+   file. The attribute `complete` is written last. HDF5 1.8's format guards its own tables by checksums, and every array carries one
+   of its bytes, so that a damaged file is told from a good one. */
 #include "checkpoint.h"
 #include "output_file.h"
 #include <errno.h>
@@ -50,8 +50,8 @@ static void NewName(Checkpoint checkpoint, char path[PETSC_MAX_PATH_LEN + 8])
   Not Collective, rank 0 writes
 
   Errors:
-  BY_ERR_OUTPUT, reported as `cannot write <directory>/checkpoint.h5: reason`. Errors while writing are reported by CheckpointCommit(),
-  which is to be called in any case.
+  BY_ERR_OUTPUT, reported as `cannot write <directory>/checkpoint.h5: reason`. Errors while writing are reported by
+CheckpointCommit(), which is to be called in any case.
 @*/
 PetscErrorCode CheckpointCreate(const char directory[], Checkpoint *checkpoint)
 {
@@ -85,7 +85,8 @@ static PetscInt64 Checksum(const void *values, size_t n)
 }
 
 /* one array; errors wait for the commit */
-static PetscErrorCode WriteArray(Checkpoint checkpoint, const char name[], hid_t type, hid_t memory_type, size_t element, size_t n, const void *values)
+static PetscErrorCode WriteArray(Checkpoint checkpoint, const char name[], hid_t type, hid_t memory_type, size_t element, size_t n,
+                                 const void *values)
 {
   const PetscInt64 sum = Checksum(values, n * element);
 
@@ -105,7 +106,8 @@ PetscErrorCode CheckpointWriteReal(Checkpoint checkpoint, const char name[], Pet
 
 PetscErrorCode CheckpointWriteInt(Checkpoint checkpoint, const char name[], PetscInt n, const PetscInt values[])
 {
-  return WriteArray(checkpoint, name, H5T_STD_I64LE, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, sizeof(PetscInt), (size_t)n, values);
+  return WriteArray(checkpoint, name, H5T_STD_I64LE, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, sizeof(PetscInt),
+                    (size_t)n, values);
 }
 
 PetscErrorCode CheckpointWriteString(Checkpoint checkpoint, const char name[], const char value[])
@@ -167,10 +169,12 @@ PetscErrorCode CheckpointOpen(const char directory[], Checkpoint *checkpoint)
   }
   OutputFileOpen((*checkpoint)->path, OUTPUT_READ, 0, PETSC_TRUE, &(*checkpoint)->file);
   if ((*checkpoint)->file.failed) reason = (*checkpoint)->file.reason;
-  else if (OutputFileGetInt(&(*checkpoint)->file, "/", "format") < 0) reason = "it is an HDF5 file, but not a checkpoint of this program";
+  else if (OutputFileGetInt(&(*checkpoint)->file, "/", "format") < 0)
+    reason = "it is an HDF5 file, but not a checkpoint of this program";
   else if (OutputFileGetInt(&(*checkpoint)->file, "/", "complete") != 1) reason = "it was not written to the end";
   else if (OutputFileGetInt(&(*checkpoint)->file, "/", "format") != FORMAT) {
-    snprintf(text, sizeof(text), "its format is %lld, this program reads %d", (long long)OutputFileGetInt(&(*checkpoint)->file, "/", "format"), FORMAT);
+    snprintf(text, sizeof(text), "its format is %lld, this program reads %d",
+             (long long)OutputFileGetInt(&(*checkpoint)->file, "/", "format"), FORMAT);
     reason = text;
   }
   if (!reason) PetscFunctionReturn(PETSC_SUCCESS);
@@ -191,7 +195,8 @@ PetscErrorCode CheckpointGetSize(Checkpoint checkpoint, const char name[], Petsc
 }
 
 /* one array of exactly n values of the kind asked for */
-static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_class_t kind, hid_t type, size_t element, PetscInt n, void *values)
+static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_class_t kind, hid_t type, size_t element, PetscInt n,
+                                void *values)
 {
   H5T_class_t found = H5T_NO_CLASS;
   PetscInt64  rows, columns;
@@ -202,11 +207,18 @@ static PetscErrorCode ReadArray(Checkpoint checkpoint, const char name[], H5T_cl
   OutputFileGetSize(&checkpoint->file, name, &rows, &columns, &found);
   if (!checkpoint->file.failed) {
     if (rows < 0) snprintf(text, sizeof(text), "it has no %s", name);
-    else if (found != kind || columns != 1) snprintf(text, sizeof(text), "%s holds %s where %s are expected", name, found == H5T_INTEGER ? "integers" : found == H5T_FLOAT ? "real numbers" : "something else", kind == H5T_INTEGER ? "integers" : "real numbers");
-    else if (rows != n) snprintf(text, sizeof(text), "%s has %lld values where the scene needs %" PetscInt_FMT, name, (long long)rows, n);
+    else if (found != kind || columns != 1)
+      snprintf(text, sizeof(text), "%s holds %s where %s are expected", name,
+               found == H5T_INTEGER ? "integers"
+               : found == H5T_FLOAT ? "real numbers"
+                                    : "something else",
+               kind == H5T_INTEGER ? "integers" : "real numbers");
+    else if (rows != n)
+      snprintf(text, sizeof(text), "%s has %lld values where the scene needs %" PetscInt_FMT, name, (long long)rows, n);
     else {
       OutputFileRead(&checkpoint->file, name, type, 0, (size_t)n, values);
-      if (!checkpoint->file.failed && OutputFileGetInt(&checkpoint->file, name, "sum") != Checksum(values, (size_t)n * element)) snprintf(text, sizeof(text), "%s is damaged", name);
+      if (!checkpoint->file.failed && OutputFileGetInt(&checkpoint->file, name, "sum") != Checksum(values, (size_t)n * element))
+        snprintf(text, sizeof(text), "%s is damaged", name);
     }
   }
   if (checkpoint->file.failed) snprintf(text, sizeof(text), "%s", checkpoint->file.reason);
@@ -227,7 +239,8 @@ PetscErrorCode CheckpointReadReal(Checkpoint checkpoint, const char name[], Pets
 
 PetscErrorCode CheckpointReadInt(Checkpoint checkpoint, const char name[], PetscInt n, PetscInt values[])
 {
-  return ReadArray(checkpoint, name, H5T_INTEGER, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, sizeof(PetscInt), n, values);
+  return ReadArray(checkpoint, name, H5T_INTEGER, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, sizeof(PetscInt), n,
+                   values);
 }
 
 /* n: room in `value`, the terminating zero included */

@@ -143,7 +143,8 @@ PetscBool OutputFileClose(OutputFile *file, PetscBool sync)
     file->id = -1;
   }
   // give back the blocks that were reserved and not used
-  if (file->writing && !stat(file->path, &status) && truncate(file->path, status.st_size)) OutputFileFail(file, "%s", strerror(errno));
+  if (file->writing && !stat(file->path, &status) && truncate(file->path, status.st_size))
+    OutputFileFail(file, "%s", strerror(errno));
   H5Eset_auto2(H5E_DEFAULT, print, file->print_data);
   return file->failed ? PETSC_FALSE : PETSC_TRUE;
 }
@@ -159,7 +160,8 @@ void OutputFileGroup(OutputFile *file, const char name[])
 
 void OutputFileCreateSet(OutputFile *file, const char name[], hid_t type, size_t columns, size_t rows, PetscBool compress)
 {
-  const size_t  n_chunks = (rows + OUTPUT_CHUNK_MAX - 1) / OUTPUT_CHUNK_MAX; // of about equal size, so that chunks end where steps do
+  const size_t n_chunks =
+      (rows + OUTPUT_CHUNK_MAX - 1) / OUTPUT_CHUNK_MAX; // of about equal size, so that chunks end where steps do
   const hsize_t none[2] = {0, columns}, most[2] = {H5S_UNLIMITED, columns};
   const hsize_t chunk[2] = {n_chunks ? (rows + n_chunks - 1) / n_chunks : 1, columns};
   const int     rank     = columns > 1 ? 2 : 1;
@@ -192,7 +194,8 @@ void OutputFileWriteArray(OutputFile *file, const char name[], hid_t type, hid_t
   links = H5Pcreate(H5P_LINK_CREATE);
   H5Pset_create_intermediate_group(links, 1);
   set = H5Dcreate2(file->id, name, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
-  if (set < 0 || (n && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || H5Dclose(set) < 0) FailFromHDF5(file, "write", name);
+  if (set < 0 || (n && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || H5Dclose(set) < 0)
+    FailFromHDF5(file, "write", name);
   H5Pclose(links);
   H5Sclose(space);
 }
@@ -236,7 +239,9 @@ void OutputFileAppend(OutputFile *file, const char name[], hid_t memory_type, si
     if (H5Dset_extent(set, extent) < 0) FailFromHDF5(file, "extend", name);
     from = H5Screate_simple(rank, count, NULL);
     to   = H5Dget_space(set);
-    if (!file->failed && (H5Sselect_hyperslab(to, H5S_SELECT_SET, start, NULL, count, NULL) < 0 || H5Dwrite(set, memory_type, from, to, H5P_DEFAULT, data) < 0)) FailFromHDF5(file, "write", name);
+    if (!file->failed && (H5Sselect_hyperslab(to, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
+                          H5Dwrite(set, memory_type, from, to, H5P_DEFAULT, data) < 0))
+      FailFromHDF5(file, "write", name);
     H5Sclose(to);
     H5Sclose(from);
   }
@@ -261,13 +266,17 @@ void OutputFileRead(OutputFile *file, const char name[], hid_t memory_type, size
   hid_t   set = OpenSet(file, name, &rank, extent), memory, space;
 
   if (set < 0) return;
-  if (start + rows > extent[0]) OutputFileFail(file, "data set %s has %llu rows where %llu are needed", name, (unsigned long long)extent[0], (unsigned long long)(start + rows));
+  if (start + rows > extent[0])
+    OutputFileFail(file, "data set %s has %llu rows where %llu are needed", name, (unsigned long long)extent[0],
+                   (unsigned long long)(start + rows));
   if (rows && !file->failed) {
     count[0] = rows;
     count[1] = extent[1];
     memory   = H5Screate_simple(rank, count, NULL);
     space    = H5Dget_space(set);
-    if (H5Sselect_hyperslab(space, H5S_SELECT_SET, from, NULL, count, NULL) < 0 || H5Dread(set, memory_type, memory, space, H5P_DEFAULT, data) < 0) FailFromHDF5(file, "read", name);
+    if (H5Sselect_hyperslab(space, H5S_SELECT_SET, from, NULL, count, NULL) < 0 ||
+        H5Dread(set, memory_type, memory, space, H5P_DEFAULT, data) < 0)
+      FailFromHDF5(file, "read", name);
     H5Sclose(space);
     H5Sclose(memory);
   }
@@ -329,20 +338,23 @@ void OutputFileWriteText(OutputFile *file, const char name[], const char value[]
   type  = TextType(value, H5T_CSET_UTF8);
   space = H5Screate(H5S_SCALAR);
   set   = H5Dcreate2(file->id, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) < 0 || H5Dclose(set) < 0) FailFromHDF5(file, "write", name);
+  if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) < 0 || H5Dclose(set) < 0)
+    FailFromHDF5(file, "write", name);
   H5Sclose(space);
   H5Tclose(type);
 }
 
 /* write an attribute; one that is there keeps its type and gets the new value */
-static void SetAttribute(OutputFile *file, const char name[], const char attribute[], hid_t type, hid_t memory_type, hid_t space, const void *value)
+static void SetAttribute(OutputFile *file, const char name[], const char attribute[], hid_t type, hid_t memory_type, hid_t space,
+                         const void *value)
 {
   hid_t object, a = -1;
 
   if (file->failed) return;
   object = H5Oopen(file->id, name, H5P_DEFAULT);
   if (object >= 0) {
-    a = H5Aexists(object, attribute) > 0 ? H5Aopen(object, attribute, H5P_DEFAULT) : H5Acreate2(object, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    a = H5Aexists(object, attribute) > 0 ? H5Aopen(object, attribute, H5P_DEFAULT)
+                                         : H5Acreate2(object, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT);
     if (a < 0 || H5Awrite(a, memory_type, value) < 0 || H5Aclose(a) < 0) FailFromHDF5(file, "attribute", attribute);
     H5Oclose(object);
   } else FailFromHDF5(file, "attribute", attribute);

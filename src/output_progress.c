@@ -2,16 +2,16 @@
 #include "output.h"
 #include <unistd.h>
 
-#define REFRESH_TERMINAL 0.1  /* [s] */
-#define REFRESH_LOG      10.0 /* [s] */
+#define REFRESH_TERMINAL 0.1 /* [s] */
+#define REFRESH_LOG 10.0     /* [s] */
 
 struct _Progress {
   PetscBool active, terminal, started;
-  PetscReal time0, wall0;  /* where this process began: a resumed run does not count what was done before */
+  PetscReal time0, wall0; /* where this process began: a resumed run does not count what was done before */
   PetscInt  step0;
-  PetscReal shown;         /* wall time of the last line   */
-  PetscInt  step_shown;    /* its step                     */
-  PetscReal rate;          /* steps per second, smoothed   */
+  PetscReal shown;      /* wall time of the last line   */
+  PetscInt  step_shown; /* its step                     */
+  PetscReal rate;       /* steps per second, smoothed   */
 };
 
 PetscErrorCode ProgressCreate(Progress *progress)
@@ -78,10 +78,15 @@ PetscErrorCode ProgressShow(Progress progress, const ProgressState *state, Petsc
   progress->step_shown = state->step;
 
   done = state->time - progress->time0;
-  FormatDuration(last ? state->wall : done > 0 ? (state->wall - progress->wall0) * (state->end - state->time) / done : PETSC_INFINITY, left);
-  fprintf(stderr, "%s%5.1f %%  time %.5g / %.5g s  step %" PetscInt_FMT "  dt %.2e s  %" PetscInt_FMT " iterations  %.3g steps/s  %s %s%s", progress->terminal ? "\r" : "",
-          100.0 * state->time / PetscMax(state->end, 1e-300), state->time, state->end, state->step, state->dt, state->iterations, progress->rate,
-          last ? "took" : "left", done > 0 || last ? left : "--:--:--", progress->terminal ? "\033[K" : "");
+  FormatDuration(last       ? state->wall
+                 : done > 0 ? (state->wall - progress->wall0) * (state->end - state->time) / done
+                            : PETSC_INFINITY,
+                 left);
+  fprintf(stderr,
+          "%s%5.1f %%  time %.5g / %.5g s  step %" PetscInt_FMT "  dt %.2e s  %" PetscInt_FMT " iterations  %.3g steps/s  %s %s%s",
+          progress->terminal ? "\r" : "", 100.0 * state->time / PetscMax(state->end, 1e-300), state->time, state->end, state->step,
+          state->dt, state->iterations, progress->rate, last ? "took" : "left", done > 0 || last ? left : "--:--:--",
+          progress->terminal ? "\033[K" : "");
   if (last || !progress->terminal) fprintf(stderr, "\n");
   fflush(stderr);
   PetscFunctionReturn(PETSC_SUCCESS);

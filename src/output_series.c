@@ -17,9 +17,9 @@
 #define STEP_CHUNK 256 /* rows of the small tables in a chunk */
 
 const SeriesLayout series_layouts[] = {
-  {"PolyData",         "/VTKHDF/Vertices", "Polyvertex",  1, 1,  0},
-  {"PolyData",         "/VTKHDF/Polygons", "Triangle",    3, 5,  2},
-  {"UnstructuredGrid", "/VTKHDF",          "Tetrahedron", 4, 10, 0},
+    {"PolyData", "/VTKHDF/Vertices", "Polyvertex", 1, 1, 0},
+    {"PolyData", "/VTKHDF/Polygons", "Triangle", 3, 5, 2},
+    {"UnstructuredGrid", "/VTKHDF", "Tetrahedron", 4, 10, 0},
 };
 static const char *const poly_groups[] = {"/VTKHDF/Vertices", "/VTKHDF/Lines", "/VTKHDF/Polygons", "/VTKHDF/Strips"};
 
@@ -35,15 +35,9 @@ static Path In(const char group[], const char name[])
   return path;
 }
 
-static int CategoryCount(Series series)
-{
-  return series->kind == SERIES_TETRAHEDRA ? 1 : 4;
-}
+static int CategoryCount(Series series) { return series->kind == SERIES_TETRAHEDRA ? 1 : 4; }
 
-static const char *Category(Series series, int c)
-{
-  return series->kind == SERIES_TETRAHEDRA ? "/VTKHDF" : poly_groups[c];
-}
+static const char *Category(Series series, int c) { return series->kind == SERIES_TETRAHEDRA ? "/VTKHDF" : poly_groups[c]; }
 
 static PetscErrorCode Grow(void **array, size_t *capacity, size_t n, size_t element)
 {
@@ -113,8 +107,10 @@ static PetscErrorCode CreateFile(Series series, const char scene_text[])
 static PetscErrorCode AddField(Series series, const char name[], const char unit[], PetscInt components)
 {
   PetscFunctionBegin;
-  PetscCheck(series->n_fields < SERIES_FIELDS_MAX, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "more than %d fields in %s", SERIES_FIELDS_MAX, series->path);
-  PetscCheck(strlen(name) < sizeof(series->fields[0].name) && !strpbrk(name, "/.<>&\""), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "field name \"%s\" is too long or has one of / . < > & \"", name);
+  PetscCheck(series->n_fields < SERIES_FIELDS_MAX, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "more than %d fields in %s",
+             SERIES_FIELDS_MAX, series->path);
+  PetscCheck(strlen(name) < sizeof(series->fields[0].name) && !strpbrk(name, "/.<>&\""), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "field name \"%s\" is too long or has one of / . < > & \"", name);
   snprintf(series->fields[series->n_fields].name, sizeof(series->fields[0].name), "%s", name);
   snprintf(series->fields[series->n_fields].unit, sizeof(series->fields[0].unit), "%s", unit ? unit : "");
   series->fields[series->n_fields++].components = components;
@@ -122,7 +118,7 @@ static PetscErrorCode AddField(Series series, const char name[], const char unit
 }
 
 typedef struct {
-  Series     series;
+  Series      series;
   OutputFile *file;
 } FieldVisit;
 
@@ -198,14 +194,16 @@ static void CountRows(Series series, PetscInt64 *points, PetscInt64 *cells)
 /* cut all data sets back to the steps and parts that are kept */
 static void Shrink(Series series, OutputFile *file)
 {
-  static const char *const step_tables[] = {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"};
+  static const char *const step_tables[] = {"Values",       "PartOffsets", "NumberOfParts",
+                                            "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"};
   const SeriesLayout      *layout        = &series_layouts[series->kind];
   const PetscInt64         n_steps       = (PetscInt64)series->n_steps;
   PetscInt64               points, cells, rows;
 
   CountRows(series, &points, &cells);
   OutputFileSetInts(file, "/VTKHDF/Steps", "NSteps", 1, &n_steps);
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(step_tables); i++) OutputFileResize(file, In("/VTKHDF/Steps", step_tables[i]).text, series->n_steps);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(step_tables); i++)
+    OutputFileResize(file, In("/VTKHDF/Steps", step_tables[i]).text, series->n_steps);
   OutputFileResize(file, "/VTKHDF/NumberOfPoints", series->n_parts);
   for (int c = 0; c < CategoryCount(series); c++) {
     const PetscBool used = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
@@ -236,11 +234,14 @@ static PetscErrorCode ContinueFile(Series series, PetscReal time)
   // first only look: what cannot be understood is left as it is
   OutputFileOpen(series->path, OUTPUT_READ, 0, PETSC_FALSE, &file);
   PetscCall(ReadTables(series, &file, time));
-  if (!file.failed && H5Literate_by_name(file.id, "/VTKHDF/PointData", H5_INDEX_NAME, H5_ITER_NATIVE, NULL, VisitField, &visit, H5P_DEFAULT) < 0) OutputFileFail(&file, "no fields");
+  if (!file.failed &&
+      H5Literate_by_name(file.id, "/VTKHDF/PointData", H5_INDEX_NAME, H5_ITER_NATIVE, NULL, VisitField, &visit, H5P_DEFAULT) < 0)
+    OutputFileFail(&file, "no fields");
   readable = OutputFileClose(&file, PETSC_FALSE);
   if (!readable) {
     series->failed = PETSC_TRUE;
-    PetscFunctionReturn(InputError("resume", "the results %s cannot be continued: %s\n  move that file away to begin a new one", series->path, file.reason));
+    PetscFunctionReturn(InputError("resume", "the results %s cannot be continued: %s\n  move that file away to begin a new one",
+                                   series->path, file.reason));
   }
   OutputFileOpen(series->path, OUTPUT_CHANGE, 0, PETSC_FALSE, &file);
   Shrink(series, &file);
@@ -269,7 +270,8 @@ static PetscErrorCode ContinueFile(Series series, PetscReal time)
   Reference:
   VTKHDF file format specification 2.0, https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/
 @*/
-PetscErrorCode SeriesCreate(const char directory[], const char name[], SeriesKind kind, const char scene_text[], PetscBool append, PetscReal time, Series *series)
+PetscErrorCode SeriesCreate(const char directory[], const char name[], SeriesKind kind, const char scene_text[], PetscBool append,
+                            PetscReal time, Series *series)
 {
   PetscMPIInt    rank;
   Series         s;
@@ -303,7 +305,8 @@ PetscErrorCode SeriesCreate(const char directory[], const char name[], SeriesKin
 PetscErrorCode SeriesSetDoublePrecision(Series series, PetscBool flag)
 {
   PetscFunctionBegin;
-  PetscCheck(!series->active || !series->has_sets || flag == series->double_precision, PETSC_COMM_SELF, PETSC_ERR_ORDER, "%s has steps already", series->path);
+  PetscCheck(!series->active || !series->has_sets || flag == series->double_precision, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+             "%s has steps already", series->path);
   series->double_precision = flag;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -346,7 +349,8 @@ static PetscErrorCode IsLastPart(Series series, OutputFile *file, PetscInt n, Pe
     *same = part->n_cells == series->n_cells ? PETSC_TRUE : PETSC_FALSE;
     if (*same) {
       PetscCall(PetscCalloc1(n_ids, &old));
-      OutputFileRead(file, In(layout->cells, "Connectivity").text, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, (size_t)part->id_offset, n_ids, old);
+      OutputFileRead(file, In(layout->cells, "Connectivity").text, sizeof(PetscInt) == 4 ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64,
+                     (size_t)part->id_offset, n_ids, old);
       PetscCall(PetscArraycmp(old, series->cells, n_ids, same));
       PetscCall(PetscFree(old));
     }
@@ -369,7 +373,7 @@ static PetscErrorCode AddPart(Series series, OutputFile *file, PetscInt n)
   PetscFunctionBegin;
   PetscCall(Grow((void **)&series->parts, &series->part_capacity, series->n_parts + 1, sizeof(Part)));
   CountRows(series, &points, &cells);
-  part = &series->parts[series->n_parts++];
+  part  = &series->parts[series->n_parts++];
   *part = (Part){.n_points = n, .n_cells = n_cells, .cell_offset = cells, .id_offset = cells * layout->nodes};
 
   PetscCall(PetscMalloc3((size_t)n_cells + 1, &offsets, n_ids, &ids, (size_t)n_cells, &types));
@@ -378,9 +382,9 @@ static PetscErrorCode AddPart(Series series, OutputFile *file, PetscInt n)
   if (n_cells) memset(types, layout->vtk_cell, (size_t)n_cells);
   OutputFileAppend(file, "/VTKHDF/NumberOfPoints", H5T_NATIVE_INT64, 1, &part->n_points);
   for (int c = 0; c < CategoryCount(series); c++) {
-    const PetscBool  used   = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
-    const PetscInt64 m      = used ? n_cells : 0, m_ids = used ? (PetscInt64)n_ids : 0;
-    const char      *group  = Category(series, c);
+    const PetscBool  used = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
+    const PetscInt64 m = used ? n_cells : 0, m_ids = used ? (PetscInt64)n_ids : 0;
+    const char      *group = Category(series, c);
 
     OutputFileAppend(file, In(group, "NumberOfCells").text, H5T_NATIVE_INT64, 1, &m);
     OutputFileAppend(file, In(group, "NumberOfConnectivityIds").text, H5T_NATIVE_INT64, 1, &m_ids);
@@ -406,7 +410,8 @@ static PetscErrorCode CreateSets(Series series, OutputFile *file, PetscInt n, Pe
     const PetscBool used = c == layout->category ? PETSC_TRUE : PETSC_FALSE;
 
     OutputFileCreateSet(file, In(Category(series, c), "Offsets").text, H5T_STD_I64LE, 1, used ? n_cells + 1 : STEP_CHUNK, used);
-    OutputFileCreateSet(file, In(Category(series, c), "Connectivity").text, H5T_STD_I64LE, 1, used ? n_cells * (size_t)layout->nodes : STEP_CHUNK, used);
+    OutputFileCreateSet(file, In(Category(series, c), "Connectivity").text, H5T_STD_I64LE, 1,
+                        used ? n_cells * (size_t)layout->nodes : STEP_CHUNK, used);
   }
   if (series->kind == SERIES_TETRAHEDRA) OutputFileCreateSet(file, "/VTKHDF/Types", H5T_STD_U8LE, 1, n_cells, PETSC_TRUE);
   OutputFileCreateSet(file, "/VTKHDF/Points", type, 3, rows, PETSC_TRUE);
@@ -414,7 +419,8 @@ static PetscErrorCode CreateSets(Series series, OutputFile *file, PetscInt n, Pe
   for (PetscInt f = 0; f < n_fields; f++) {
     const Path path = In("/VTKHDF/PointData", fields[f].name);
 
-    PetscCheck(fields[f].components == 1 || fields[f].components == 3, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "field %s has %" PetscInt_FMT " components", fields[f].name, fields[f].components);
+    PetscCheck(fields[f].components == 1 || fields[f].components == 3, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "field %s has %" PetscInt_FMT " components", fields[f].name, fields[f].components);
     PetscCall(AddField(series, fields[f].name, fields[f].unit, fields[f].components));
     OutputFileCreateSet(file, path.text, type, (size_t)fields[f].components, rows, PETSC_TRUE);
     OutputFileSetText(file, path.text, "units", fields[f].unit && *fields[f].unit ? fields[f].unit : "1");
@@ -427,12 +433,16 @@ static PetscErrorCode CreateSets(Series series, OutputFile *file, PetscInt n, Pe
 static PetscErrorCode CheckFields(Series series, PetscInt n_fields, const OutputField fields[])
 {
   PetscFunctionBegin;
-  PetscCheck(n_fields == series->n_fields, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "%s has %" PetscInt_FMT " fields, now %" PetscInt_FMT, series->path, series->n_fields, n_fields);
+  PetscCheck(n_fields == series->n_fields, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "%s has %" PetscInt_FMT " fields, now %" PetscInt_FMT, series->path, series->n_fields, n_fields);
   for (PetscInt f = 0; f < n_fields; f++) {
     PetscInt g = 0;
 
-    while (g < series->n_fields && (strcmp(series->fields[g].name, fields[f].name) || series->fields[g].components != fields[f].components)) g++;
-    PetscCheck(g < series->n_fields, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "%s has no field %s with %" PetscInt_FMT " components", series->path, fields[f].name, fields[f].components);
+    while (g < series->n_fields &&
+           (strcmp(series->fields[g].name, fields[f].name) || series->fields[g].components != fields[f].components))
+      g++;
+    PetscCheck(g < series->n_fields, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "%s has no field %s with %" PetscInt_FMT " components",
+               series->path, fields[f].name, fields[f].components);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -440,9 +450,9 @@ static PetscErrorCode CheckFields(Series series, PetscInt n_fields, const Output
 /* the row of a step in every table of Steps; NSteps last */
 static void AddStep(Series series, OutputFile *file, const Step *step)
 {
-  const SeriesLayout *layout   = &series_layouts[series->kind];
-  const Part         *part     = &series->parts[step->part];
-  const PetscInt64    n_steps  = (PetscInt64)series->n_steps + 1, one = 1;
+  const SeriesLayout *layout  = &series_layouts[series->kind];
+  const Part         *part    = &series->parts[step->part];
+  const PetscInt64    n_steps = (PetscInt64)series->n_steps + 1, one = 1;
   PetscInt64          cells[4] = {0, 0, 0, 0}, ids[4] = {0, 0, 0, 0};
 
   cells[layout->category] = part->cell_offset;
@@ -453,17 +463,22 @@ static void AddStep(Series series, OutputFile *file, const Step *step)
   OutputFileAppend(file, "/VTKHDF/Steps/PointOffsets", H5T_NATIVE_INT64, 1, &step->point_offset);
   OutputFileAppend(file, "/VTKHDF/Steps/CellOffsets", H5T_NATIVE_INT64, 1, cells);
   OutputFileAppend(file, "/VTKHDF/Steps/ConnectivityIdOffsets", H5T_NATIVE_INT64, 1, ids);
-  for (PetscInt f = 0; f < series->n_fields; f++) OutputFileAppend(file, In("/VTKHDF/Steps/PointDataOffsets", series->fields[f].name).text, H5T_NATIVE_INT64, 1, &step->point_offset);
+  for (PetscInt f = 0; f < series->n_fields; f++)
+    OutputFileAppend(file, In("/VTKHDF/Steps/PointDataOffsets", series->fields[f].name).text, H5T_NATIVE_INT64, 1,
+                     &step->point_offset);
   OutputFileSetInts(file, "/VTKHDF/Steps", "NSteps", 1, &n_steps);
 }
 
 /* upper bound of what a step adds to the file [bytes] */
 static size_t StepBytes(Series series, PetscInt n, PetscInt n_fields, const OutputField fields[])
 {
-  const PetscBool new_part = !series->n_parts || series->parts[series->n_parts - 1].n_points != n || (series->kind != SERIES_POINTS && !series->cells_checked) ? PETSC_TRUE : PETSC_FALSE;
-  const size_t nodes   = (size_t)series_layouts[series->kind].nodes;
-  const size_t n_cells = (size_t)(series->kind == SERIES_POINTS ? n : series->n_cells);
-  size_t       numbers = 3;
+  const PetscBool new_part = !series->n_parts || series->parts[series->n_parts - 1].n_points != n ||
+                                     (series->kind != SERIES_POINTS && !series->cells_checked)
+                                 ? PETSC_TRUE
+                                 : PETSC_FALSE;
+  const size_t    nodes    = (size_t)series_layouts[series->kind].nodes;
+  const size_t    n_cells  = (size_t)(series->kind == SERIES_POINTS ? n : series->n_cells);
+  size_t          numbers  = 3;
 
   for (PetscInt f = 0; f < n_fields; f++) numbers += (size_t)fields[f].components;
   return numbers * (size_t)n * (series->double_precision ? 8 : 4) + (new_part ? n_cells * (8 + 8 * nodes + 1) : 0);
@@ -485,7 +500,8 @@ static size_t StepBytes(Series series, PetscInt n, PetscInt n_fields, const Outp
   Errors:
   BY_ERR_OUTPUT, reported once; what was written before stays readable, and later calls return BY_ERR_OUTPUT in silence
 @*/
-PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const PetscReal x[], PetscInt n_fields, const OutputField fields[])
+PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const PetscReal x[], PetscInt n_fields,
+                           const OutputField fields[])
 {
   OutputFile file;
   PetscBool  same;
@@ -495,7 +511,8 @@ PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const Pets
   PetscFunctionBegin;
   if (!series->active) PetscFunctionReturn(PETSC_SUCCESS);
   if (series->failed) PetscFunctionReturn(BY_ERR_OUTPUT);
-  PetscCheck(series->kind == SERIES_POINTS || series->cells, PETSC_COMM_SELF, PETSC_ERR_ORDER, "SeriesSetCells comes before the first SeriesWrite of %s", series->path);
+  PetscCheck(series->kind == SERIES_POINTS || series->cells, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+             "SeriesSetCells comes before the first SeriesWrite of %s", series->path);
   PetscCall(Grow((void **)&series->steps, &series->step_capacity, series->n_steps + 1, sizeof(Step)));
   OutputFileOpen(series->path, OUTPUT_CHANGE, StepBytes(series, n, n_fields, fields), PETSC_FALSE, &file);
   PetscCall(IsLastPart(series, &file, n, &same));
@@ -507,7 +524,8 @@ PetscErrorCode SeriesWrite(Series series, PetscReal time, PetscInt n, const Pets
 
   step = (Step){.part = (PetscInt64)series->n_parts - 1, .point_offset = points, .time = time};
   OutputFileAppend(&file, "/VTKHDF/Points", H5T_NATIVE_DOUBLE, (size_t)n, x);
-  for (PetscInt f = 0; f < n_fields; f++) OutputFileAppend(&file, In("/VTKHDF/PointData", fields[f].name).text, H5T_NATIVE_DOUBLE, (size_t)n, fields[f].data);
+  for (PetscInt f = 0; f < n_fields; f++)
+    OutputFileAppend(&file, In("/VTKHDF/PointData", fields[f].name).text, H5T_NATIVE_DOUBLE, (size_t)n, fields[f].data);
   AddStep(series, &file, &step);
   if (Finish(series, &file)) PetscFunctionReturn(BY_ERR_OUTPUT);
   series->steps[series->n_steps++] = step;

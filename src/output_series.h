@@ -27,7 +27,7 @@ struct _Series {
   size_t     n_steps, n_parts, step_capacity, part_capacity;
   Step      *steps;
   Part      *parts;
-  PetscBool  has_sets;         /* the data sets of points and fields are there: a first step was written */
+  PetscBool  has_sets; /* the data sets of points and fields are there: a first step was written */
   PetscInt   n_fields;
   struct {
     char     name[64], unit[32];

@@ -78,7 +78,9 @@ static PetscBool IsRowKept(const char row[], const char *end, PetscInt n_columns
 
   for (const char *s = row; s < end; s++) commas += *s == ',';
   t = strtod(row, &stop);
-  return commas == n_columns - 1 && stop > row && stop <= end && t <= time + 1e-9 * PetscMax(1e-3, PetscAbsReal(time)) ? PETSC_TRUE : PETSC_FALSE;
+  return commas == n_columns - 1 && stop > row && stop <= end && t <= time + 1e-9 * PetscMax(1e-3, PetscAbsReal(time))
+             ? PETSC_TRUE
+             : PETSC_FALSE;
 }
 
 /* keep the rows up to `time` of a table that is there, under the same header */
@@ -90,7 +92,8 @@ static PetscErrorCode ContinueTable(Table table, const OutputText *header, Petsc
   PetscFunctionBegin;
   status = ReadText(table->path, &old);
   if (!status && (old.n < header->n || strncmp(old.text, header->text, header->n)))
-    status = InputError("resume", "the table %s has other columns than this run writes\n  move that file away to begin a new one", table->path);
+    status = InputError("resume", "the table %s has other columns than this run writes\n  move that file away to begin a new one",
+                        table->path);
   if (!status) {
     PetscCall(OutputTextAdd(&kept, "%s", header->text));
     for (const char *row = old.text + header->n, *end; (end = strchr(row, '\n')); row = end + 1) {
@@ -119,7 +122,8 @@ static PetscErrorCode ContinueTable(Table table, const OutputText *header, Petsc
   Errors:
   BY_ERR_OUTPUT, or BY_ERR_INPUT when the table to be continued has other columns; both reported
 @*/
-PetscErrorCode TableCreate(const char directory[], const char file[], PetscInt n_columns, const char *const headers[], PetscBool append, PetscReal time, Table *table)
+PetscErrorCode TableCreate(const char directory[], const char file[], PetscInt n_columns, const char *const headers[],
+                           PetscBool append, PetscReal time, Table *table)
 {
   PetscMPIInt    rank;
   OutputText     header = {NULL, 0, 0};

@@ -14,17 +14,14 @@
 #define N 2000
 static char directory[1024], path[1100];
 
-static PetscReal Value(int i, int generation)
-{
-  return sin(1.7 * i * i) * pow(10, i % 600 - 300) + generation;
-}
+static PetscReal Value(int i, int generation) { return sin(1.7 * i * i) * pow(10, i % 600 - 300) + generation; }
 
 static PetscErrorCode Save(const char where[], int generation, PetscInt n)
 {
-  Checkpoint      c;
-  PetscReal      *x;
-  const PetscInt  step = 100 + generation;
-  PetscErrorCode  status;
+  Checkpoint     c;
+  PetscReal     *x;
+  const PetscInt step = 100 + generation;
+  PetscErrorCode status;
 
   x = (PetscReal *)malloc((size_t)n * sizeof(*x));
   for (PetscInt i = 0; i < n; i++) x[i] = Value(i, generation);
@@ -61,10 +58,12 @@ static PetscErrorCode Load(const char where[], int generation)
   if (!status) status = CheckpointGetSize(c, "flap/u", &n_none);
   if (!status) status = CheckpointGetSize(c, "no/such", &n_missing);
   if (!status) {
-    same = step == 100 + generation && n == N && n_none == 0 && n_missing == -1 && !strcmp(text, "run: {end: 1} # \xc3\xa9\n") ? PETSC_TRUE : PETSC_FALSE;
+    same = step == 100 + generation && n == N && n_none == 0 && n_missing == -1 && !strcmp(text, "run: {end: 1} # \xc3\xa9\n")
+               ? PETSC_TRUE
+               : PETSC_FALSE;
     for (int i = 0; i < N && same; i++) {
       const PetscReal expected = Value(i, generation);
-      same = memcmp(&x[i], &expected, sizeof(expected)) ? PETSC_FALSE : PETSC_TRUE;
+      same                     = memcmp(&x[i], &expected, sizeof(expected)) ? PETSC_FALSE : PETSC_TRUE;
     }
     if (!same) status = WRONG_VALUE;
   }
@@ -73,7 +72,7 @@ static PetscErrorCode Load(const char where[], int generation)
 }
 
 /* stderr of what follows goes to a pipe (that no limit of files concerns) until Release() */
-static int kept = -1, catcher = -1;
+static int  kept = -1, catcher = -1;
 static void Catch(void)
 {
   int ends[2];
@@ -111,11 +110,12 @@ static int ReleaseAfter(void **state)
 }
 
 /* the message names the file, says `what`, and the status is that of bad input */
-#define assert_refused(status, what) \
-  do { \
-    const PetscErrorCode got_ = (status); \
-    const char          *text_ = Release(); \
-    if (got_ != BY_ERR_INPUT || !strstr(text_, path) || !strstr(text_, what)) fail_msg("status %d, message \"%s\", expected %s and \"%s\"", (int)got_, text_, path, what); \
+#define assert_refused(status, what)                                                                                               \
+  do {                                                                                                                             \
+    const PetscErrorCode got_  = (status);                                                                                         \
+    const char          *text_ = Release();                                                                                        \
+    if (got_ != BY_ERR_INPUT || !strstr(text_, path) || !strstr(text_, what))                                                      \
+      fail_msg("status %d, message \"%s\", expected %s and \"%s\"", (int)got_, text_, path, what);                                 \
   } while (0)
 
 static void every_value_comes_back_bit_for_bit(void **state)
@@ -127,7 +127,7 @@ static void every_value_comes_back_bit_for_bit(void **state)
   assert_petsc(Load(directory, 2));
 }
 
-static char  *Bytes(size_t *n)
+static char *Bytes(size_t *n)
 {
   FILE *f = fopen(path, "rb");
   char *bytes;
@@ -182,7 +182,7 @@ static void a_damaged_checkpoint_is_refused_or_unhurt(void **state)
     PutBytes(bytes, n);
     bytes[at] ^= 0x55;
     Catch();
-    status = Load(directory, 4); // with wrong values it is not good; with good ones what was hit was padding
+    status           = Load(directory, 4); // with wrong values it is not good; with good ones what was hit was padding
     const char *text = Release();
     if (status && (status != BY_ERR_INPUT || !strstr(text, path))) fail_msg("byte %zu: status %d, \"%s\"", at, (int)status, text);
     if (status) refused++;
@@ -306,11 +306,11 @@ static int End(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test_teardown(every_value_comes_back_bit_for_bit, ReleaseAfter),
-    cmocka_unit_test_teardown(a_truncated_checkpoint_is_refused_at_every_length, ReleaseAfter),
-    cmocka_unit_test_teardown(a_damaged_checkpoint_is_refused_or_unhurt, ReleaseAfter),
-    cmocka_unit_test_teardown(what_is_not_a_checkpoint_of_this_scene_is_refused, ReleaseAfter),
-    cmocka_unit_test_teardown(the_old_checkpoint_survives_a_failed_one, ReleaseAfter),
+      cmocka_unit_test_teardown(every_value_comes_back_bit_for_bit, ReleaseAfter),
+      cmocka_unit_test_teardown(a_truncated_checkpoint_is_refused_at_every_length, ReleaseAfter),
+      cmocka_unit_test_teardown(a_damaged_checkpoint_is_refused_or_unhurt, ReleaseAfter),
+      cmocka_unit_test_teardown(what_is_not_a_checkpoint_of_this_scene_is_refused, ReleaseAfter),
+      cmocka_unit_test_teardown(the_old_checkpoint_survives_a_failed_one, ReleaseAfter),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, Begin, End);

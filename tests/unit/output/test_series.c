@@ -45,7 +45,7 @@ static PetscErrorCode WriteWater(Series series, PetscReal time, PetscInt n)
 /* like WriteWater, but hands BY_ERR_OUTPUT on without a traceback */
 static PetscErrorCode TryWater(Series series, PetscReal time, PetscInt n)
 {
-  PetscReal        *data = (PetscReal *)calloc((size_t)n * 3, sizeof(PetscReal));
+  PetscReal        *data      = (PetscReal *)calloc((size_t)n * 3, sizeof(PetscReal));
   const OutputField fields[2] = {{"velocity", "m/s", 3, data}, {"pressure", "Pa", 1, data}};
   PetscErrorCode    status;
 
@@ -98,7 +98,8 @@ static void particles_come_back_at_every_time(void **state)
 }
 
 /* two tetrahedra whose points move */
-static PetscErrorCode WriteBody(const char name[], PetscBool append, PetscReal from, int first, int last, PetscBool double_precision)
+static PetscErrorCode WriteBody(const char name[], PetscBool append, PetscReal from, int first, int last,
+                                PetscBool double_precision)
 {
   static const PetscReal rest[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
   static const PetscInt  tets[8]  = {0, 1, 2, 3, 1, 2, 3, 4};
@@ -137,7 +138,16 @@ static void topology_of_a_body_is_stored_once(void **state)
 
 static void a_resumed_series_is_the_uninterrupted_one(void **state)
 {
-  static const char *const sets[] = {"/VTKHDF/Points", "/VTKHDF/PointData/displacement", "/VTKHDF/Steps/Values", "/VTKHDF/Steps/PointOffsets", "/VTKHDF/Steps/PartOffsets", "/VTKHDF/Steps/CellOffsets", "/VTKHDF/Steps/PointDataOffsets/displacement", "/VTKHDF/Connectivity", "/VTKHDF/Offsets", "/VTKHDF/NumberOfPoints"};
+  static const char *const sets[] = {"/VTKHDF/Points",
+                                     "/VTKHDF/PointData/displacement",
+                                     "/VTKHDF/Steps/Values",
+                                     "/VTKHDF/Steps/PointOffsets",
+                                     "/VTKHDF/Steps/PartOffsets",
+                                     "/VTKHDF/Steps/CellOffsets",
+                                     "/VTKHDF/Steps/PointDataOffsets/displacement",
+                                     "/VTKHDF/Connectivity",
+                                     "/VTKHDF/Offsets",
+                                     "/VTKHDF/NumberOfPoints"};
 
   (void)state;
   assert_petsc(WriteBody("whole", PETSC_FALSE, 0, 0, 5, PETSC_FALSE));
@@ -193,7 +203,7 @@ static void a_step_without_particles_is_stored(void **state)
 
 static void a_surface_without_fields_can_be_continued(void **state)
 {
-  static const PetscReal x[12]   = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  static const PetscReal x[12]    = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   static const PetscInt  cells[6] = {0, 1, 2, 1, 2, 3};
   Series                 series;
 
@@ -224,7 +234,7 @@ static const char *Caught(void (*body)(void *), void *context)
   fflush(stderr);
   dup2(keep, STDERR_FILENO);
   close(keep);
-  n       = pread(file, text, sizeof(text) - 1, 0);
+  n                   = pread(file, text, sizeof(text) - 1, 0);
   text[n > 0 ? n : 0] = '\0';
   close(file);
   return text;
@@ -445,17 +455,17 @@ static int End(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_file_over_the_limit_is_reported_and_stays_readable),
-    cmocka_unit_test(a_full_disk_is_reported_and_results_stay_readable),
-    cmocka_unit_test(a_write_that_fails_late_leaves_the_file_as_it_was),
-    cmocka_unit_test(what_cannot_be_created_is_one_line_with_the_reason),
-    cmocka_unit_test(a_damaged_series_is_refused_and_left_alone),
-    cmocka_unit_test(a_series_resumed_before_its_first_step_begins_anew),
-    cmocka_unit_test(a_step_without_particles_is_stored),
-    cmocka_unit_test(a_surface_without_fields_can_be_continued),
-    cmocka_unit_test(a_resumed_series_is_the_uninterrupted_one),
-    cmocka_unit_test(particles_come_back_at_every_time),
-    cmocka_unit_test(topology_of_a_body_is_stored_once),
+      cmocka_unit_test(a_file_over_the_limit_is_reported_and_stays_readable),
+      cmocka_unit_test(a_full_disk_is_reported_and_results_stay_readable),
+      cmocka_unit_test(a_write_that_fails_late_leaves_the_file_as_it_was),
+      cmocka_unit_test(what_cannot_be_created_is_one_line_with_the_reason),
+      cmocka_unit_test(a_damaged_series_is_refused_and_left_alone),
+      cmocka_unit_test(a_series_resumed_before_its_first_step_begins_anew),
+      cmocka_unit_test(a_step_without_particles_is_stored),
+      cmocka_unit_test(a_surface_without_fields_can_be_continued),
+      cmocka_unit_test(a_resumed_series_is_the_uninterrupted_one),
+      cmocka_unit_test(particles_come_back_at_every_time),
+      cmocka_unit_test(topology_of_a_body_is_stored_once),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, Begin, End);

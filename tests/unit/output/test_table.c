@@ -68,7 +68,9 @@ static void a_resumed_table_drops_later_and_broken_rows(void **state)
   Table               table;
 
   (void)state;
-  PutText("t.csv", "time [s],\"work, fluid [J]\",steps [1]\n0,0.1,1\n0.30000000000000004,2,3\nnot,a,row\n0.4,5,6\n0.5,1"); // the last was cut
+  PutText(
+      "t.csv",
+      "time [s],\"work, fluid [J]\",steps [1]\n0,0.1,1\n0.30000000000000004,2,3\nnot,a,row\n0.4,5,6\n0.5,1"); // the last was cut
   assert_petsc(TableCreate(directory, "t.csv", 3, headers, PETSC_TRUE, 0.3, &table));
   assert_petsc(TableWrite(table, row));
   assert_petsc(TableDestroy(&table));
@@ -138,8 +140,10 @@ static void a_summary_is_valid_json(void **state)
   assert_petsc(JsonReal(json, "inf", -INFINITY));
   assert_string_equal(Text("summary.json"), "old"); // until the end
   assert_petsc(JsonDestroy(&json));
-  assert_string_equal(Text("summary.json"), "{\n  \"status\": \"a \\\"quoted\\\"\\n\\\\path\\t\\u0001 \xc3\xa9\",\n  \"fluid\": {\n    \"particles\": 25000,\n    \"empty\": {},\n"
-                                            "    \"third\": 0.3333333333333333\n  },\n  \"tenth\": 0.1,\n  \"nan\": null,\n  \"inf\": null\n}\n");
+  assert_string_equal(Text("summary.json"),
+                      "{\n  \"status\": \"a \\\"quoted\\\"\\n\\\\path\\t\\u0001 \xc3\xa9\",\n  \"fluid\": {\n    \"particles\": "
+                      "25000,\n    \"empty\": {},\n"
+                      "    \"third\": 0.3333333333333333\n  },\n  \"tenth\": 0.1,\n  \"nan\": null,\n  \"inf\": null\n}\n");
 }
 
 static void a_log_shows_progress_every_ten_seconds_and_at_the_end(void **state)
@@ -171,7 +175,8 @@ static void a_log_shows_progress_every_ten_seconds_and_at_the_end(void **state)
   text[n] = '\0';
   for (const char *c = text; *c; c++) lines += *c == '\n';
   assert_int_equal(lines, 4); // at 10, 20, 30 s and the end
-  assert_true(strncmp(text, " 25.0 %  time 0.25 / 1 s  step 250  dt 1.00e-03 s  5 iterations  25 steps/s  left 00:00:30\n", 91) == 0);
+  assert_true(strncmp(text, " 25.0 %  time 0.25 / 1 s  step 250  dt 1.00e-03 s  5 iterations  25 steps/s  left 00:00:30\n", 91) ==
+              0);
   assert_non_null(strstr(text, "100.0 %  time 1 / 1 s  step 1000  dt 1.00e-03 s  5 iterations  25 steps/s  took 00:00:40\n"));
 }
 
@@ -194,12 +199,12 @@ static int End(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(numbers_of_a_table_read_back_exactly),
-    cmocka_unit_test(a_resumed_table_drops_later_and_broken_rows),
-    cmocka_unit_test(a_table_with_other_columns_is_refused),
-    cmocka_unit_test(a_limit_leaves_whole_rows),
-    cmocka_unit_test(a_summary_is_valid_json),
-    cmocka_unit_test(a_log_shows_progress_every_ten_seconds_and_at_the_end),
+      cmocka_unit_test(numbers_of_a_table_read_back_exactly),
+      cmocka_unit_test(a_resumed_table_drops_later_and_broken_rows),
+      cmocka_unit_test(a_table_with_other_columns_is_refused),
+      cmocka_unit_test(a_limit_leaves_whole_rows),
+      cmocka_unit_test(a_summary_is_valid_json),
+      cmocka_unit_test(a_log_shows_progress_every_ten_seconds_and_at_the_end),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, Begin, End);
