@@ -81,7 +81,7 @@ BY_EXTERN PetscErrorCode TLEDGetTime(TLED tled, PetscReal *time);
 BY_EXTERN PetscErrorCode TLEDSetTime(TLED tled, PetscReal time);
 
 /* internal force f(u) [N] at displacement u, and tangent K(u) = df/du as an n x n AIJ matrix of block size 3 (created on first
-   call when *K is NULL, rows of constrained nodes are kept: the caller treats them) */
+   call when *K is NULL, rows of constrained nodes are kept: the caller treats them); exact for t4, a response operator for anp */
 BY_EXTERN PetscErrorCode TLEDInternalForce(TLED tled, Vec u, Vec f);
 BY_EXTERN PetscErrorCode TLEDTangent(TLED tled, Vec u, Mat *K);
 

@@ -85,9 +85,9 @@ BY_HD void TLEDAverageStress(const double H[9], double r, double inv_J, double J
 }
 
 /* Stiffness blocks of the neo-Hookean tetrahedron, K_ab = df_a/du_b [N/m], closed form with the current gradients g = F^-T G:
-     K_ab = V0 [ mu (G_a . G_b) I + (mu - lambda ln J) g_b g_a^T + lambda g_a g_b^T ]
-   K is 12 x 12, row-major, rows 3 a + i. */
-BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double V0, double mu, double lambda, double K[144])
+     K_ab = V0 [ mu (G_a . G_b) I + (mu - lambda ln J) g_b g_a^T + lambda' g_a g_b^T ]
+   with lambda' = lambda. (A smaller lambda' takes volumetric stiffness out, see TLEDTangent().) K is 12 x 12, row-major, rows 3 a + i. */
+BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime, double K[144])
 {
   const double jm1 = TLEDJacobianMinusOne(H), inv_J = 1.0 / (1.0 + jm1), c = mu - lambda*TLEDLogJacobian(jm1);
   double       F[9], B[9], G4[12], g[12];
@@ -105,15 +105,15 @@ BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double 
       const double d = V0*mu*Dot3(&G4[3*a], &G4[3*b]);
       for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
-          K[12*(3*a + i) + 3*b + k] = V0*(c*g[3*b + i]*g[3*a + k] + lambda*g[3*a + i]*g[3*b + k]) + (i == k ? d : 0.0);
+          K[12*(3*a + i) + 3*b + k] = V0*(c*g[3*b + i]*g[3*a + k] + lambda_prime*g[3*a + i]*g[3*b + k]) + (i == k ? d : 0.0);
       }
     }
   }
 }
 
 /* Stiffness blocks of the St Venant-Kirchhoff tetrahedron with y = F G:
-     K_ab = V0 [ (G_a . S G_b) I + lambda y_a y_b^T + mu (y_b y_a^T + (G_a . G_b) F F^T) ] */
-BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], double V0, double mu, double lambda, double K[144])
+     K_ab = V0 [ (G_a . S G_b) I + lambda' y_a y_b^T + mu (y_b y_a^T + (G_a . G_b) F F^T) ],  lambda' = lambda as above */
+BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime, double K[144])
 {
   double F[9], B[9], S[6], G4[12], y[12];
 
@@ -132,17 +132,17 @@ BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], 
       const double  GSG = A[0]*(S[0]*C[0] + S[3]*C[1] + S[5]*C[2]) + A[1]*(S[3]*C[0] + S[1]*C[1] + S[4]*C[2]) + A[2]*(S[5]*C[0] + S[4]*C[1] + S[2]*C[2]);
       for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
-          K[12*(3*a + i) + 3*b + k] = V0*(lambda*y[3*a + i]*y[3*b + k] + mu*(y[3*b + i]*y[3*a + k] + GG*B[3*i + k]) + (i == k ? GSG : 0.0));
+          K[12*(3*a + i) + 3*b + k] = V0*(lambda_prime*y[3*a + i]*y[3*b + k] + mu*(y[3*b + i]*y[3*a + k] + GG*B[3*i + k]) + (i == k ? GSG : 0.0));
       }
     }
   }
 }
 
 /* stiffness of the law `law` */
-BY_HD void TLEDStiffness(int law, const double H[9], const double G[9], double V0, double mu, double lambda, double K[144])
+BY_HD void TLEDStiffness(int law, const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime, double K[144])
 {
-  if (law == TLED_LAW_NEO_HOOKEAN) TLEDStiffnessNeoHookean(H, G, V0, mu, lambda, K);
-  else TLEDStiffnessStVenantKirchhoff(H, G, V0, mu, lambda, K);
+  if (law == TLED_LAW_NEO_HOOKEAN) TLEDStiffnessNeoHookean(H, G, V0, mu, lambda, lambda_prime, K);
+  else TLEDStiffnessStVenantKirchhoff(H, G, V0, mu, lambda, lambda_prime, K);
 }
 
 #endif

@@ -4,6 +4,7 @@
    Beam: 1 x 0.1 x 0.1 m, clamped at x = 0, E 3 MPa, rho 1000 kg/m^3, g 9.81 m/s^2 in -z. Cook: 48 x 44/16 x 8 mm, clamped at x = 0, dead traction
    6.25 MPa in y on x = 48 mm, mu 80.194 MPa, nu 0.499, sides free. */
 #include "unit/tled/body.h"
+#include <petscksp.h>
 
 typedef struct {
   const char *mesh;
@@ -175,4 +176,60 @@ static void NearIncompressibility_DoesNotLockAnp(void **state)
   }
 }
 
-CHECK_MAIN(cmocka_unit_test(Relaxation_ReachesTheStaticState), cmocka_unit_test(Release_PeaksWhereAndWhenItShould), cmocka_unit_test(NearIncompressibility_DoesNotLockAnp))
+/* the tangent that stands for anp's in the coupling answers a small load as the element does, within a fifth */
+static void AnpTangent_AnswersLikeTheElement(void **state)
+{
+  const PetscReal  g[3] = {0.0, 0.0, -1e-3};
+  TLEDParams      *p;
+  TLED             tled = Beam("h1", &p);
+  const PetscReal *x, *mass;
+  const PetscBool *held;
+  PetscReal       *f, moved;
+  PetscInt         n, n_held = 0, *rows, tip;
+  Vec              u, load;
+  Mat              K = NULL;
+  KSP              ksp;
+  PC               pc;
+
+  (void)state;
+  p->element = TLED_ELEMENT_ANP;
+  p->poisson = 0.45;
+  p->damping = 14.0;
+  assert_petsc(TLEDSetGravity(tled, g));
+  assert_petsc(TLEDSetUp(tled));
+  assert_petsc(TLEDGetSize(tled, &n, NULL));
+  assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+  assert_petsc(TLEDTangent(tled, u, &K));
+  assert_petsc(TLEDGetMass(tled, &mass));
+  assert_petsc(TLEDIsConstrained(tled, &held));
+  assert_petsc(VecDuplicate(u, &load));
+  assert_petsc(PetscMalloc1(3*n, &rows));
+  assert_petsc(VecGetArray(load, &f));
+  for (PetscInt k = 0; k < 3*n; k++) {
+    f[k] = held[k / 3] ? 0.0 : g[k % 3]*mass[k / 3];
+    if (held[k / 3]) rows[n_held++] = k;
+  }
+  assert_petsc(VecRestoreArray(load, &f));
+  tip = NodeAt(tled, 1.0, 0.05, 0.05);
+  assert_petsc(TLEDAdvance(tled, 2.5, NULL));
+  assert_petsc(TLEDGetPositions(tled, &x, NULL));
+  moved = x[3*tip + 2] - 0.05;
+  assert_petsc(MatZeroRowsColumns(K, n_held, rows, 1e6, NULL, NULL));
+  assert_petsc(KSPCreate(PETSC_COMM_SELF, &ksp));
+  assert_petsc(KSPSetType(ksp, KSPPREONLY));
+  assert_petsc(KSPGetPC(ksp, &pc));
+  assert_petsc(PCSetType(pc, PCLU));
+  assert_petsc(KSPSetOperators(ksp, K, K));
+  assert_petsc(KSPSolve(ksp, load, u));
+  assert_petsc(TLEDGetPositions(tled, &x, NULL));
+  printf("anp tangent: tip answers %.3f of what the element does\n", (x[3*tip + 2] - 0.05) / moved);
+  assert_close(x[3*tip + 2] - 0.05, moved, 0.2, moved);
+  assert_petsc(KSPDestroy(&ksp));
+  assert_petsc(MatDestroy(&K));
+  assert_petsc(VecDestroy(&load));
+  assert_petsc(PetscFree(rows));
+  assert_petsc(TLEDDestroy(&tled));
+}
+
+CHECK_MAIN(cmocka_unit_test(Relaxation_ReachesTheStaticState), cmocka_unit_test(Release_PeaksWhereAndWhenItShould), cmocka_unit_test(NearIncompressibility_DoesNotLockAnp),
+           cmocka_unit_test(AnpTangent_AnswersLikeTheElement))

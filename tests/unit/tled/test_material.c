@@ -109,7 +109,7 @@ static void Stiffness_IsTheDerivativeOfForces(void **state)
     const double V0 = TLEDReferenceGradients(X, G);
     assert_true(V0 > 0.0);
     Gradient(patch_reference[law][1].F, H);
-    TLEDStiffness(law, H, G, V0, reference_mu, reference_lambda, K);
+    TLEDStiffness(law, H, G, V0, reference_mu, reference_lambda, reference_lambda, K);
     for (int b = 0; b < 12; b++) {
       double g[3], dF[9], dP[9], f[9], sum = 0.0;
       for (int j = 0; j < 3; j++) g[j] = b < 3 ? -(G[j] + G[3 + j] + G[6 + j]) : G[3*(b / 3 - 1) + j];
