@@ -2,13 +2,13 @@
    device.
 
    Patch p gives the part lambda_p of the kernel's volume behind its surface, a height z_p, a normal n_p and a foot point f_p.
-   Two patches are convex neighbours when each foot lies behind the other's plane: the body is the intersection of their half
-   spaces; else it is the union. With u, v the two parts and alpha the angle between the normals, the intersection's part is
+   Two patches are convex neighbours when each foot lies behind the other's plane: the body is the intersection of their half spaces;
+   concave, when each lies in front: the union. With u, v the two parts and alpha the angle between the normals, the intersection's part is
    Plackett's copula C(u, v; theta) [Plackett 1965, J. Amer. Statist. Assoc. 60, 516], sqrt(theta) = (pi - alpha)/alpha:
      alpha = 90 degrees: C = u v, the product rule of method 2;  alpha -> 0: C -> min(u, v);  alpha -> 180: C -> max(0, u+v-1)
      u = v = 1/2 (on the edge): C = (pi - alpha)/(2 pi), exact for every radial kernel
      C(u,v) = u + v - 1 + C(1-u,1-v): unions are u + v - C(u,v), consistent with intersections of the complement.
-   More patches: the cotree of the relation graph (unions of intersections of unions ...).
+   More patches: unions of intersections of unions ..., as the relations allow (ProxyCotree()).
 
    The two faces of a thin sheet (convex, normals opposed) would take volume off each other: the one behind is neutral for a
    particle in front of the other, and between them the nearer one decides (one-sidedness of method 4.3).
@@ -166,11 +166,11 @@ BY_HD unsigned ProxyComponent(unsigned set, const unsigned related[PROXY_PATCHES
   return component;
 }
 
-/* Combine the leaves of `set` along the cotree of the relation: not connected by convexity -> union of the components; not
-   connected by concavity -> intersection; connected by both (a path of four, no such cotree) -> intersection. Iterative: a stack
-   of sets, evaluated when both halves are there. */
-BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], const unsigned concave[PROXY_PATCHES], ProxyNode leaf[],
-                       ProxyNode *total)
+/* Combine the leaves along a cotree of the relations: no convex pair between two groups -> their union; no concave pair between them ->
+   their intersection; else (teeth finer than h) the patch that the particle is farthest behind is taken out by intersection. Pairs
+   that are neither convex nor concave fit both ways. Iterative: sets are split first, then evaluated backwards. */
+BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], const unsigned concave[PROXY_PATCHES], const ProxyDual z[],
+                       ProxyNode leaf[], ProxyNode *total)
 {
   unsigned set[2*PROXY_PATCHES];
   int      parent[2*PROXY_PATCHES], is_convex[2*PROXY_PATCHES], slot[2*PROXY_PATCHES], n_sets = 1;
@@ -188,7 +188,13 @@ BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], co
     if (part == set[i]) {
       is_convex[i] = 1;
       part         = ProxyComponent(set[i], concave);
-      if (part == set[i]) part = lowest;
+      if (part == set[i]) {
+        int deepest = -1;
+        for (int p = 0; p < n; p++) {
+          if ((set[i] & (1u << p)) && (deepest < 0 || z[p].v < z[deepest].v)) deepest = p;
+        }
+        part = 1u << deepest;
+      }
     }
     set[n_sets] = part;
     parent[n_sets++] = i;
@@ -215,27 +221,35 @@ BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], co
   *total = leaf[slot[0]];
 }
 
-/* how far patch q is neutral because p, its opposite across a thin sheet, is nearer: o(cos) smoothstep(z_q/(z_p + z_q)); 0 .. 1 */
-BY_HD ProxyDual ProxyNeutral(const ProxyDual *z_p, const ProxyDual *z_q, const ProxyDual *cosine)
+/* How far patch q is neutral because p, its opposite across a thin sheet, is nearer; 0 .. 1. o(cos): only nearly parallel faces are a
+   sheet (from 150 to 166 degrees between the normals), a wedge is an intersection. In front of p, q is neutral, as far as the particle is
+   behind q at all (0.05 h: a rounded tip); between the two, z_q/(z_p + z_q) tells which is nearer. */
+BY_HD ProxyDual ProxyNeutral(double h, const ProxyDual *z_p, const ProxyDual *z_q, const ProxyDual *cosine)
 {
-  double          slope, part;
-  const double    sum = z_p->v + z_q->v;
-  const double    o = ProxySmoothStep((-cosine->v - 0.5)/0.3, &slope);
-  const ProxyDual opposed = ProxyDualOf2(o, -slope/0.3, cosine, 0.0, cosine);
+  double       slope, part, part_p = 0.0, part_q = 0.0;
+  const double sum = z_p->v + z_q->v;
 
-  if (z_p->v >= 0.0 && z_q->v < 0.0) return opposed;
-  if (z_q->v >= 0.0 || sum >= 0.0) return ProxyDualOf(0.0);
-  part = ProxySmoothStep(z_q->v/sum, &slope);
-  const ProxyDual nearer = ProxyDualOf2(part, -slope*z_q->v/(sum*sum), z_p, slope*z_p->v/(sum*sum), z_q);
+  if (z_q->v >= 0.0) return ProxyDualOf(0.0);
+  const double    o = ProxySmoothStep((-cosine->v - 0.866)/0.104, &slope);
+  const ProxyDual opposed = ProxyDualOf2(o, -slope/0.104, cosine, 0.0, cosine);
+  const double    tip = ProxySmoothStep(-z_q->v/(0.05*h), &slope), tip_slope = -slope/(0.05*h);
+  part = 1.0;
+  if (z_p->v < 0.0) {
+    part   = ProxySmoothStep(z_q->v/sum, &slope);
+    part_p = -slope*z_q->v/(sum*sum);
+    part_q = slope*z_p->v/(sum*sum);
+  }
+  const ProxyDual nearer = ProxyDualOf2(part*tip, part_p*tip, z_p, part_q*tip + part*tip_slope, z_q);
   return ProxyDualTimes(&opposed, &nearer);
 }
 
 /* phi of a body at a particle from its n patches, and the part of its gradient that belongs to each (n x 3); s = calibration */
-BY_HD double ProxyBodyPhi(int n, double s, const ProxyPatchValue patch[], double grad[][3])
+BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch[], double grad[][3])
 {
   ProxyNode leaf[PROXY_PATCHES], total;
   ProxyDual z[PROXY_PATCHES], coverage = ProxyDualOf(0.0);
   unsigned  convex[PROXY_PATCHES], concave[PROXY_PATCHES];
+  const double tol = 1e-6*h; // round-off of feet on one plane
 
   // leaves: s lambda, normals, heights
   for (int p = 0; p < n; p++) {
@@ -255,20 +269,22 @@ BY_HD double ProxyBodyPhi(int n, double s, const ProxyPatchValue patch[], double
 
   // relations; the opposite face of a thin sheet is neutral: 1 - lambda is taken down by 1 - g
   for (int p = 0; p < n; p++) {
-    for (int q = 0; q < n; q++) {
-      double relation = 0.0;
-      if (p == q) continue;
-      for (int k = 0; k < 3; k++) relation += (leaf[p].n[k].v - leaf[q].n[k].v) * (patch[q].foot[k] - patch[p].foot[k]);
-      if (relation <= 0.0) convex[p] |= 1u << q;
-      else concave[p] |= 1u << q;
+    for (int q = 0; q < p; q++) {
+      double a = 0.0, b = 0.0; // height of q's foot above p's plane, of p's above q's
+      for (int k = 0; k < 3; k++) {
+        a += leaf[p].n[k].v*(patch[q].foot[k] - patch[p].foot[k]);
+        b += leaf[q].n[k].v*(patch[p].foot[k] - patch[q].foot[k]);
+      }
+      if (a <= tol && b <= tol && a + b < -tol) convex[p] |= 1u << q, convex[q] |= 1u << p;
+      if (a >= -tol && b >= -tol && a + b > tol) concave[p] |= 1u << q, concave[q] |= 1u << p;
     }
   }
   for (int q = 0; q < n; q++) {
     for (int p = 0; p < n; p++) {
       if (p == q || !(convex[p] & (1u << q))) continue;
       const ProxyDual cosine = ProxyDualDot(leaf[p].n, leaf[q].n);
-      if (cosine.v > -0.5) continue;
-      const ProxyDual g = ProxyNeutral(&z[p], &z[q], &cosine);
+      if (cosine.v > -0.866) continue;
+      const ProxyDual g = ProxyNeutral(h, &z[p], &z[q], &cosine);
       leaf[q].y = ProxyDualOf2(s - (s - leaf[q].y.v)*(1.0 - g.v), 1.0 - g.v, &leaf[q].y, s - leaf[q].y.v, &g);
     }
   }
@@ -283,7 +299,7 @@ BY_HD double ProxyBodyPhi(int n, double s, const ProxyPatchValue patch[], double
     }
   }
 
-  ProxyCotree(n, s, convex, concave, leaf, &total);
+  ProxyCotree(n, s, convex, concave, z, leaf, &total);
   for (int p = 0; p < n; p++) {
     for (int k = 0; k < 3; k++) grad[p][k] = total.y.g[3*p + k];
   }

@@ -296,7 +296,7 @@ static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3
     PatchMeans(p, x, base, touch, n, s, &value[s]);
     value[s].open = p->surface.patch_open[slots[s]];
   }
-  return ProxyBodyPhi(n_slots, p->factor, value, grad);
+  return ProxyBodyPhi(n_slots, p->fluid.h, p->factor, value, grad);
 }
 
 /* write one touched particle and its pairs; proxies with less than 1e-14 of the weight are left out */
