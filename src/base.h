@@ -14,14 +14,15 @@
 enum { BY_EXIT_DONE = 0, BY_EXIT_FAILURE = 1, BY_EXIT_INPUT = 2, BY_EXIT_BREAKDOWN = 3, BY_EXIT_INTERRUPTED = 130 };
 
 /* error codes of ours beside PETSc's: the user's input is wrong (already reported by InputError), and a simulation that broke
-   down (the object's GetBreakdown tells why). They travel without a traceback: call with ByCall. */
+   down (the object's GetBreakdown tells why). They, and all codes from 9001 to 9099, travel without a traceback:
+   call with ByCall. */
 #define BY_ERR_INPUT     ((PetscErrorCode)9001)
 #define BY_ERR_BREAKDOWN ((PetscErrorCode)9002)
 
 #define ByCall(...) \
   do { \
     const PetscErrorCode by_ierr_ = (__VA_ARGS__); \
-    if (by_ierr_ == BY_ERR_INPUT || by_ierr_ == BY_ERR_BREAKDOWN) PetscFunctionReturn(by_ierr_); \
+    if ((int)by_ierr_ >= 9001 && (int)by_ierr_ <= 9099) PetscFunctionReturn(by_ierr_); \
     PetscCall(by_ierr_); \
   } while (0)
 

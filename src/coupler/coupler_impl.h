@@ -27,6 +27,7 @@ typedef struct {
   Proxy           proxy; /* NULL for a body that no fluid can reach                                       */
   PetscInt        n_nodes;
   PetscReal      *x;             /* n x 3 positions of an obstacle; NULL for a body                        */
+  PetscBool       placed;        /* an obstacle's proxies are placed once                                   */
   PetscInt       *triangles;     /* of an obstacle                                                         */
   PetscInt        n_triangles;
   PetscReal      *force;         /* n x 3 [N] forces of the fluid on the nodes, last step                  */

@@ -113,7 +113,7 @@ static PetscErrorCode Finish(Run *run, PetscErrorCode outcome)
     PetscCall(CouplerGetBreakdown(c, &why));
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the simulation broke down at %s\n", why));
     ByCall(CouplerResultsWrite(c, &run->results));
-    PetscCall(CouplerResultsSummary(c, &run->results, status, WallSeconds(run)));
+    ByCall(CouplerResultsSummary(c, &run->results, status, WallSeconds(run)));
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "results up to this time are in %s\n", run->params.directory));
     PetscFunctionReturn(BY_ERR_BREAKDOWN);
   }
@@ -129,21 +129,22 @@ static PetscErrorCode Finish(Run *run, PetscErrorCode outcome)
 
 static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
 {
-  Coupler     c;
-  char        path[PETSC_MAX_PATH_LEN];
-  const char *name;
+  Coupler        c;
+  PetscErrorCode ierr;
+  char           path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
   PetscCall(CouplerCreate(PETSC_COMM_SELF, &run->coupler));
   c = run->coupler;
   ByCall(CouplerSetFromOptions(c));
-  ByCall(OutputMakeDirectory(run->params.directory));
+  ierr = OutputMakeDirectory(run->params.directory);
+  if (ierr == BY_ERR_OUTPUT) PetscFunctionReturn(InputError("run.directory", "cannot be made or written\nname a directory that you may write"));
+  PetscCall(ierr);
   PetscCall(CouplerSetUp(c));
   if (resume) {
     ByCall(CouplerLoad(c, resume, &run->n_outputs));
     PetscCall(PetscStrcmp(resume, run->params.directory, &run->same_directory));
   }
-  PetscCall(SceneGetPath(scene, &name));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/scene.yaml", run->params.directory));
   ByCall(SceneWrite(scene, path));
   PetscCall(SceneGetText(scene, &run->scene_text));
