@@ -10,27 +10,27 @@
 /* inlined without question: a vector loop has no calls, and constants handed in (the law) fold away */
 #define INLINE static inline __attribute__((always_inline))
 
-/* what a block works on: its nodes' values as structures of arrays, its forces with a padded row per node */
+/* x, y, z of a node and a fourth number, as one vector register: corners are loaded and forces added a node at a time, and turned into
+   lanes by transposition, which is cheaper than gathers of single numbers */
+typedef double Row __attribute__((vector_size(32)));
+
+/* what a block works on: its nodes' values and forces */
 typedef struct {
-  double u[3][TLED_BLOCK_NODES];
+  Row    u[TLED_BLOCK_NODES];
+  Row    f[TLED_BLOCK_NODES];
   double value[2][TLED_BLOCK_NODES];
-  double f[TLED_BLOCK_NODES][4];
 } Scratch;
 
 /* values of a pack of elements */
 typedef struct {
   double H[9][L], jm1[L], ln_J[L];
-} Pack;
+} __attribute__((aligned(64))) Pack;
 
 static void LoadNodes(const TLEDBlocks *b, int block, const double u[], Scratch *s)
 {
   const int *node = b->node + b->node_offset[block], n = b->node_offset[block + 1] - b->node_offset[block];
 
-  for (int a = 0; a < n; a++) {
-    s->u[0][a] = u[3*node[a]];
-    s->u[1][a] = u[3*node[a] + 1];
-    s->u[2][a] = u[3*node[a] + 2];
-  }
+  for (int a = 0; a < n; a++) s->u[a] = (Row){u[3*node[a]], u[3*node[a] + 1], u[3*node[a] + 2], 0.0};
 }
 
 /* how many lanes are broken: det F <= 0 or NaN */
@@ -42,16 +42,53 @@ INLINE int CountBroken(const double jm1[])
   return broken;
 }
 
-/* displacement gradient and J - 1 of each lane; returns how many lanes are broken */
-static int PackGradients(const int local[], const double G[], const Scratch *s, Pack *p)
+/* x, y, z of four rows as lanes */
+INLINE void RowsToLanes(Row r0, Row r1, Row r2, Row r3, double x[], double y[], double z[])
 {
-  const int *n0 = local, *n1 = local + L, *n2 = local + 2*L, *n3 = local + 3*L;
+  typedef long long Pick __attribute__((vector_size(32)));
+  const Row xz01 = __builtin_shuffle(r0, r1, (Pick){0, 4, 2, 6}), y01 = __builtin_shuffle(r0, r1, (Pick){1, 5, 3, 7});
+  const Row xz23 = __builtin_shuffle(r2, r3, (Pick){0, 4, 2, 6}), y23 = __builtin_shuffle(r2, r3, (Pick){1, 5, 3, 7});
 
-#pragma omp simd /* gathers: worth it here, though the compiler's cost model thinks not */
+  *(Row *)x = __builtin_shuffle(xz01, xz23, (Pick){0, 1, 4, 5});
+  *(Row *)y = __builtin_shuffle(y01, y23, (Pick){0, 1, 4, 5});
+  *(Row *)z = __builtin_shuffle(xz01, xz23, (Pick){2, 3, 6, 7});
+}
+
+/* add x, y, z of four lanes to four rows; one after the other, since they may be the same row */
+INLINE void AddLanesToRows(const double x[], const double y[], const double z[], Row *r0, Row *r1, Row *r2, Row *r3)
+{
+  typedef long long Pick __attribute__((vector_size(32)));
+  const Row X = *(const Row *)x, Y = *(const Row *)y, Z = *(const Row *)z, O = {0.0, 0.0, 0.0, 0.0};
+  const Row xy02 = __builtin_shuffle(X, Y, (Pick){0, 4, 2, 6}), xy13 = __builtin_shuffle(X, Y, (Pick){1, 5, 3, 7});
+  const Row z02 = __builtin_shuffle(Z, O, (Pick){0, 4, 2, 6}), z13 = __builtin_shuffle(Z, O, (Pick){1, 5, 3, 7});
+
+  *r0 += __builtin_shuffle(xy02, z02, (Pick){0, 1, 4, 5});
+  *r1 += __builtin_shuffle(xy13, z13, (Pick){0, 1, 4, 5});
+  *r2 += __builtin_shuffle(xy02, z02, (Pick){2, 3, 6, 7});
+  *r3 += __builtin_shuffle(xy13, z13, (Pick){2, 3, 6, 7});
+}
+
+/* u_a - u_0 of each lane for the corners a = 1, 2, 3, d[3 (a - 1) + i] */
+INLINE void PackDifferences(const int local[], const Scratch *s, double d[9][L])
+{
+  for (int l = 0; l < L; l += 4) {
+    const Row o[4] = {s->u[local[l]], s->u[local[l + 1]], s->u[local[l + 2]], s->u[local[l + 3]]};
+    for (int a = 1; a < 4; a++) {
+      const int *n = local + a*L + l;
+      RowsToLanes(s->u[n[0]] - o[0], s->u[n[1]] - o[1], s->u[n[2]] - o[2], s->u[n[3]] - o[3], &d[3*a - 3][l], &d[3*a - 2][l], &d[3*a - 1][l]);
+    }
+  }
+}
+
+/* displacement gradient and J - 1 of each lane; returns how many lanes are broken */
+INLINE int PackGradients(const int local[], const double G[], const Scratch *s, Pack *p)
+{
+  double e[9][L] __attribute__((aligned(64)));
+
+  PackDifferences(local, s, e);
+#pragma GCC ivdep
   for (int l = 0; l < L; l++) {
-    const double x = s->u[0][n0[l]], y = s->u[1][n0[l]], z = s->u[2][n0[l]];
-    const double d[9] = {s->u[0][n1[l]] - x, s->u[1][n1[l]] - y, s->u[2][n1[l]] - z, s->u[0][n2[l]] - x, s->u[1][n2[l]] - y,
-                         s->u[2][n2[l]] - z, s->u[0][n3[l]] - x, s->u[1][n3[l]] - y, s->u[2][n3[l]] - z};
+    const double d[9] = {e[0][l], e[1][l], e[2][l], e[3][l], e[4][l], e[5][l], e[6][l], e[7][l], e[8][l]};
     const double g[9] = {G[l], G[L + l], G[2*L + l], G[3*L + l], G[4*L + l], G[5*L + l], G[6*L + l], G[7*L + l], G[8*L + l]};
     double       H[9];
     TLEDDisplacementGradient(d, g, H);
@@ -108,15 +145,13 @@ INLINE void PackForces(int law, const Pack *p, const double G[], const double V0
   }
 }
 
-/* add the forces of a pack to the block's nodes, lane after lane */
-static void AddForces(const int local[], double f[12][L], Scratch *s)
+/* add the forces of a pack to the block's nodes, corner after corner and lane after lane */
+INLINE void AddForces(const int local[], double f[12][L], Scratch *s)
 {
-  for (int l = 0; l < L; l++) {
-    for (int a = 0; a < 4; a++) {
-      double *to = s->f[local[a*L + l]];
-      to[0] += f[3*a][l];
-      to[1] += f[3*a + 1][l];
-      to[2] += f[3*a + 2][l];
+  for (int a = 0; a < 4; a++) {
+    for (int l = 0; l < L; l += 4) {
+      const int *n = local + a*L + l;
+      AddLanesToRows(&f[3*a][l], &f[3*a + 1][l], &f[3*a + 2][l], &s->f[n[0]], &s->f[n[1]], &s->f[n[2]], &s->f[n[3]]);
     }
   }
 }
@@ -134,7 +169,7 @@ static void ClearForces(const TLEDBlocks *b, int block, Scratch *s)
 {
   const int n = b->node_offset[block + 1] - b->node_offset[block];
 
-  for (int a = 0; a < n; a++) s->f[a][0] = s->f[a][1] = s->f[a][2] = s->f[a][3] = 0.0;
+  for (int a = 0; a < n; a++) s->f[a] = (Row){0.0, 0.0, 0.0, 0.0};
 }
 
 static void ForcesT4(const TLEDLoops *w, const double u[])
@@ -145,7 +180,7 @@ static void ForcesT4(const TLEDLoops *w, const double u[])
   for (int block = 0; block < b->n_blocks; block++) {
     Scratch s;
     Pack    p;
-    double  f[12][L];
+    double  f[12][L] __attribute__((aligned(64)));
     int     broken = 0;
     LoadNodes(b, block, u, &s);
     ClearForces(b, block, &s);
@@ -255,7 +290,7 @@ INLINE void PassAverage(int law, int forces, const TLEDLoops *w, const double u[
   for (int block = 0; block < b->n_blocks; block++) {
     Scratch s;
     Pack    p;
-    double  f[12][L], jbar[L], pbar[L], nodal[L];
+    double  f[12][L] __attribute__((aligned(64))), jbar[L], pbar[L], nodal[L];
     LoadNodes(b, block, u, &s);
     LoadValues(b, block, w->nodal, s.value[0]);
     if (forces) LoadValues(b, block, w->pressure, s.value[1]);
