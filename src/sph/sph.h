@@ -21,7 +21,7 @@ typedef struct {
   PetscReal cfl;              /* of 0.4                                                                  */
   PetscReal time_step;        /* fixed step [s]; 0 = adaptive                                            */
   PetscReal max_time_step;    /* upper bound [s] of the adaptive step; 0 = none                          */
-  PetscReal relax_time;       /* tau [s] of the density source; 0 = 0.5 sqrt(h/g)                        */
+  PetscReal relax_time;       /* tau [s] of the density source; 0 = 0.5 h/max(sqrt(g h), mean velocity)  */
   PetscReal wall_factor;      /* s of method 2; 0 = calibrated value of kernel and h/dx                  */
   PetscReal noise_damping;    /* rate of the noise filter over sqrt(g/h); 0 = no filter                  */
   PetscReal mean_velocity[3]; /* target of the body-force controller [m/s]; 0 0 0 = no controller        */

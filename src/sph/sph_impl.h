@@ -36,7 +36,8 @@ struct _p_SPH {
 
   /* derived at SetUp */
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
-  PetscReal relax_time;              /* [s]; 0: correct all at once                      */
+  PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
+  PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
   PetscReal phi_lone, phi_full;      /* of SPHWallBound: lambda at 0.25 and at 0.1 dx [1] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
@@ -59,8 +60,8 @@ struct _p_SPH {
 
   /* pressure solve; y = p~/scale */
   PetscReal *rhs, *diagonal, *scale, *y, *residual, *direction, *Adirection, *p_tilde, *response;
-  PetscReal *mode;                   /* largest eigenvector of the scaled operator       */
-  PetscReal  norm;                   /* its eigenvalue, renewed rarely                   */
+  PetscReal *mode;                   /* where the power iteration for the norm starts    */
+  PetscReal  norm;                   /* largest eigenvalue of S D D^T S [1]              */
   PetscReal *partial;                /* SPH_CHUNKS(n) x SPH_SUMS                         */
 
   /* second copies for sorting */
@@ -114,6 +115,7 @@ typedef struct {
   void       *ctx;
 } SPHOperator;
 PETSC_INTERN PetscErrorCode SPHApply_Internal(SPH sph, const SPHOperator *op, const PetscReal y[], PetscReal out[]);
+PETSC_INTERN PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op);

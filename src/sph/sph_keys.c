@@ -18,7 +18,7 @@ const Key SPHKeys[] = {
   {"time_step", KEY_REAL, FIELD(time_step), "s", "0", 0, 1e3, 0, NULL, "fixed time step; 0 = adaptive"},
   {"max_time_step", KEY_REAL, FIELD(max_time_step), "s", "0", 0, 1e3, 0, NULL, "upper bound of the adaptive time step; 0 = none"},
   {"relax_time", KEY_REAL, FIELD(relax_time), "s", "0", 0, 1e3, 0, NULL,
-   "time in which a density error is corrected; 0 = 0.5 sqrt(h/g) with pcg, one step with jacobi"},
+   "time in which a density error is corrected; 0 = 0.5 h/max(sqrt(g h), mean velocity) with pcg, one step with jacobi"},
   {"wall_factor", KEY_REAL, FIELD(wall_factor), "1", "0", 0, 2, 0, NULL, "scales the volume of planar walls; 0 = calibrated"},
   {"noise_damping", KEY_REAL, FIELD(noise_damping), "1", "3", 0, 10, 0, NULL, "rate at which the shortest waves of particle noise decay, over sqrt(g/h); 0 = no filter"},
   {"mean_velocity", KEY_VEC3, FIELD(mean_velocity), "m/s", "0, 0, 0", -1e3, 1e3, 0, NULL, "mean velocity kept by a body force; a zero component is left alone"},

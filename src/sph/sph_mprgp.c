@@ -1,4 +1,4 @@
-/* sph_mprgp.c - conjugate gradients for the bound-constrained pressure, and for a domain full of fluid.
+/* sph_mprgp.c - conjugate gradients for the bound-constrained pressure.
 
    Minimise 1/2 y A y - b y over y >= 0 (scaled as in sph_pressure.c) by modified proportioning with reduced gradient projections,
    MPRGP [Dostal & Schoeberl, Comput. Optim. Appl. 30 (2005) 23, algorithm 1]. With the gradient g = A y - b:
@@ -175,13 +175,14 @@ static void Conjugate(SPH sph, PetscReal dAd)
   if (sums[0] < 0.1 * sums[1]) SetDirection(sph, PETSC_FALSE);
 }
 
-/* Largest eigenvalue over dt^2 by power iteration from the last mode; it hardly changes, so a few applications now and then do */
-static PetscErrorCode RenewNorm(SPH sph, const SPHOperator *op, int applications)
+/* Largest eigenvalue over dt^2 by power iteration, once: it hardly changes, and MPRGP raises it when it meets a larger quotient */
+PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op)
 {
   const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
 
   PetscFunctionBegin;
-  for (int k = 0; k < applications; k++) {
+  if (sph->norm > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < 12; k++) {
     PetscReal sums[2];
 
     PetscCall(SPHApply_Internal(sph, op, sph->mode, sph->Adirection));
@@ -202,6 +203,7 @@ static PetscErrorCode RenewNorm(SPH sph, const SPHOperator *op, int applications
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < n; i++) sph->mode[i] = factor * sph->Adirection[i] + 1e-12;
   }
+  sph->iterations = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,10 +213,6 @@ PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op)
   PetscReal       alpha;
 
   PetscFunctionBegin;
-  if (sph->norm == 0.0) {
-    PetscCall(RenewNorm(sph, op, 12));
-    sph->iterations = 0;
-  }
   sph->converged = PETSC_FALSE;
   PetscCall(Gradient(sph, op));
   SetDirection(sph, PETSC_FALSE);
@@ -259,84 +257,5 @@ PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op)
       }
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* v -= weighted mean of v, so that p~ = S v (`of_pressure`) or b = v/S has mean zero: a closed domain fixes pressure up to a constant */
-static void RemoveMean(SPH sph, PetscReal v[], PetscBool of_pressure)
-{
-  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  PetscReal sums[2];
-
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < chunks; c++) {
-    PetscReal s0 = 0, s1 = 0;
-    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-      if (sph->scale[i] == 0.0) continue;
-      s0 += of_pressure ? v[i] * sph->scale[i] : v[i] / sph->scale[i];
-      s1 += 1.0;
-    }
-    sph->partial[c * SPH_SUMS]     = s0;
-    sph->partial[c * SPH_SUMS + 1] = s1;
-  }
-  SPHSumPartials(sph, 2, sums);
-  if (sums[1] == 0.0) return;
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; i++) {
-    if (sph->scale[i] == 0.0) continue;
-    v[i] -= of_pressure ? sums[0] / sums[1] / sph->scale[i] : sums[0] / sums[1] * sph->scale[i];
-  }
-}
-
-/* Plain conjugate gradients for a domain full of fluid: pressure of either sign, its mean zero */
-PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op)
-{
-  const int       n         = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  const PetscReal tolerance = sph->params.tolerance * sph->params.density;
-  PetscReal       old       = 0.0;
-
-  PetscFunctionBegin;
-  sph->converged = PETSC_FALSE;
-  RemoveMean(sph, sph->rhs, PETSC_FALSE);
-  RemoveMean(sph, sph->y, PETSC_TRUE);
-  PetscCall(Gradient(sph, op));
-  for (;;) {
-    PetscReal sums[3];
-
-    // g . g and the mean residual
-#pragma omp parallel for schedule(static)
-    for (int c = 0; c < chunks; c++) {
-      PetscReal s0 = 0, s1 = 0, s2 = 0;
-      for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-        if (sph->scale[i] == 0.0) continue;
-        s0 += sph->residual[i] * sph->residual[i];
-        s1 += PetscAbsReal(sph->residual[i]) / sph->scale[i];
-        s2 += 1.0;
-      }
-      sph->partial[c * SPH_SUMS]     = s0;
-      sph->partial[c * SPH_SUMS + 1] = s1;
-      sph->partial[c * SPH_SUMS + 2] = s2;
-    }
-    SPHSumPartials(sph, 3, sums);
-    if (!(sums[1] > tolerance * sums[2])) {
-      sph->converged = (PetscBool)isfinite(sums[1]);
-      break;
-    }
-    if (sph->iterations >= sph->params.max_iterations) break;
-    const PetscReal gamma = old > 0 ? sums[0] / old : 0.0;
-    old                   = sums[0];
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < n; i++) sph->direction[i] = sph->residual[i] + (gamma > 0 ? gamma * sph->direction[i] : 0.0);
-    PetscCall(SPHApply_Internal(sph, op, sph->direction, sph->Adirection));
-    (void)StepLengths(sph, sums);
-    if (!(sums[1] > 0)) break;
-    const PetscReal step = sums[0] / sums[1];
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < n; i++) {
-      sph->y[i] -= step * sph->direction[i];
-      sph->residual[i] -= step * sph->Adirection[i];
-    }
-  }
-  RemoveMean(sph, sph->y, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

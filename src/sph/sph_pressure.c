@@ -41,7 +41,7 @@ static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
 {
   const int       n     = (int)sph->n;
   const PetscReal rho0  = sph->params.density, to_tilde = warm / (rho0 * rho0);
-  const PetscReal relax = sph->relax_time > dt ? dt / sph->relax_time : 1.0;
+  const PetscReal tau   = sph->relax_time < 0 ? 10.0 * dt : sph->relax_time, relax = tau > dt ? dt / tau : 1.0;
   const PetscReal tiny  = 1e-8 * rho0 * rho0 / (sph->h * sph->h); // a diagonal of a full neighbourhood is near rho0^2/h^2
 
   sph->table->Diagonal(&sph->loops, sph->diagonal);
@@ -153,6 +153,7 @@ PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, voi
   PetscCall(SPHWallRate_Internal(sph));
   Prepare(sph, dt, jacobi ? 0.5 : 1.0);
   sph->iterations = 0;
+  if (!jacobi) PetscCall(SPHFindNorm_Internal(sph, &op));
   if (jacobi) PetscCall(SPHSolveJacobi_Internal(sph, &op));
   else if (sph->params.free_surface) PetscCall(SPHSolveMPRGP_Internal(sph, &op));
   else PetscCall(SPHSolveCG_Internal(sph, &op));
@@ -169,6 +170,7 @@ PetscErrorCode SPHPackSolve_Internal(SPH sph)
   PetscFunctionBegin;
   Prepare(sph, 1.0, 0.0);
   sph->iterations = 0;
+  PetscCall(SPHFindNorm_Internal(sph, &op));
   PetscCall(SPHSolveMPRGP_Internal(sph, &op));
   ByCall(StorePressure(sph));
   PetscFunctionReturn(PETSC_SUCCESS);

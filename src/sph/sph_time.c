@@ -26,9 +26,9 @@ static PetscReal LargestSpeed(SPH sph)
   SPHGetTimeStep - largest permitted step for the current state
 
   Equation (method 1.3, after Monaghan 1992):
-  dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.125 h^2/nu, max_time_step ), and at most 1.1 times the last one
+  dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.125 h^2/nu, 0.1 h/|U|, max_time_step ), and at most 1.1 times the last one
 
-  |a|max is that of the last step. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
+  |a|max is that of the last step, U the mean velocity that is asked for. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
 
   Options Database Keys:
 + -sph_cfl <0.4>         - path of a particle in a step over spacing
@@ -39,7 +39,7 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
 {
   const SPHParams *par = &sph->params;
   const PetscReal  g = Norm3(sph->gravity), nu = par->viscosity / par->density;
-  const PetscReal  speed = PetscMax(LargestSpeed(sph), Norm3(par->mean_velocity));
+  const PetscReal  speed = LargestSpeed(sph);
   PetscReal        step  = 0.05 * sqrt(sph->h / (g > 0 ? g : 1.0));
 
   PetscFunctionBegin;
@@ -47,6 +47,7 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
     *dt = par->time_step;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (Norm3(par->mean_velocity) > 0) step = PetscMin(step, 0.1 * sph->h / Norm3(par->mean_velocity));
   if (speed > 0) step = PetscMin(step, par->cfl * par->spacing / speed);
   if (sph->accel_max > 0) step = PetscMin(step, 0.25 * sqrt(sph->h / sph->accel_max));
   if (nu > 0) step = PetscMin(step, 0.125 * sph->h * sph->h / nu);
@@ -58,13 +59,13 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
 
 /*
   Body force that holds the mean velocity U at its target U0: a proportional and an integral part,
-    f = 2 (U0 - U)/T + I,  dI/dt = (U0 - U)/T^2,  T = 5 h/|U0|
-  critically damped for a flow with constant drag: U follows within T without overshoot, and I becomes the drag per mass.
+    f = 3 (U0 - U)/T + I,  dI/dt = 4 (U0 - U)/T^2,  T = h/|U0|
+  without drag damped at 3/4 of the critical, with drag more: U follows within a few T, and I becomes the drag per mass.
 */
 static void ControlMeanVelocity(SPH sph, PetscReal dt)
 {
   const int        n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  const PetscReal *target = sph->params.mean_velocity, T = 5.0 * sph->h / Norm3(target);
+  const PetscReal *target = sph->params.mean_velocity, T = sph->h / Norm3(target);
   PetscReal        mean[3];
 
 #pragma omp parallel for schedule(static)
@@ -78,8 +79,8 @@ static void ControlMeanVelocity(SPH sph, PetscReal dt)
   for (int k = 0; k < 3; k++) {
     if (target[k] == 0.0) continue;
     const PetscReal lag = target[k] - mean[k] / n;
-    sph->body_force[k]  = 2.0 * lag / PetscMax(T, 2.0 * dt) + sph->control[k];
-    sph->control[k] += dt * lag / (T * T);
+    sph->body_force[k]  = 3.0 * lag / PetscMax(T, 6.0 * dt) + sph->control[k];
+    sph->control[k] += 4.0 * dt * lag / PetscSqr(PetscMax(T, 6.0 * dt));
   }
 }
 
