@@ -85,7 +85,7 @@ void OutputFileReserve(OutputFile *file, size_t bytes)
 
 void OutputFileOpen(const char path[], OutputMode mode, size_t bytes, PetscBool checksums, OutputFile *file)
 {
-  hid_t access, links;
+  hid_t access, create;
   int   fd;
 
   memset(file, 0, sizeof(*file));
@@ -109,16 +109,24 @@ void OutputFileOpen(const char path[], OutputMode mode, size_t bytes, PetscBool 
 
   // no locks: a viewer that has the file open must not stop the run, nor the run the viewer
   access = H5Pcreate(H5P_FILE_ACCESS);
-  links  = H5Pcreate(H5P_FILE_CREATE);
+  create = H5Pcreate(H5P_FILE_CREATE);
   H5Pset_fapl_sec2(access);
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
   H5Pset_file_locking(access, 0, 1);
+
+  // space that was given up is never used again: until a flush is through, the file on disk still refers to it
+  if (!checksums) H5Pset_file_space_strategy(create, H5F_FSPACE_STRATEGY_NONE, 0, 1);
   if (checksums) H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
-  if (mode == OUTPUT_CREATE) file->id = H5Fcreate(path, H5F_ACC_TRUNC, links, access);
+  if (mode == OUTPUT_CREATE) file->id = H5Fcreate(path, H5F_ACC_TRUNC, create, access);
   else file->id = H5Fopen(path, mode == OUTPUT_READ ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access);
   if (file->id < 0) FailFromHDF5(file, "not a whole HDF5 file", "");
-  H5Pclose(links);
+  H5Pclose(create);
   H5Pclose(access);
+}
+
+void OutputFileFlush(OutputFile *file)
+{
+  if (!file->failed && H5Fflush(file->id, H5F_SCOPE_LOCAL) < 0) FailFromHDF5(file, "flush", "");
 }
 
 PetscBool OutputFileClose(OutputFile *file, PetscBool sync)
@@ -128,7 +136,7 @@ PetscBool OutputFileClose(OutputFile *file, PetscBool sync)
 
   if (file->id >= 0) {
     // everything to the system first, while a failure can still be told from a bad close
-    if (!file->failed && file->writing && H5Fflush(file->id, H5F_SCOPE_LOCAL) < 0) FailFromHDF5(file, "flush", "");
+    if (file->writing) OutputFileFlush(file);
     if (!file->failed && file->writing && sync && fsync(GetDescriptor(file))) OutputFileFail(file, "%s", strerror(errno));
 
     // after a failure HDF5 would try again to write what it holds, over a file that is good up to the last step, and when that

@@ -23,10 +23,12 @@ typedef struct {
 typedef enum { OUTPUT_READ, OUTPUT_CHANGE, OUTPUT_CREATE } OutputMode;
 
 /* Open or create; to write, only when about `bytes` more fit on the disk and under the shell's limit. `checksums`: HDF5 1.8 file
- * format, whose metadata carry checksums (checkpoints; results keep the oldest format). */
+   format, whose metadata carry checksums (checkpoints; results keep to what older readers know). */
 PETSC_INTERN void OutputFileOpen(const char path[], OutputMode mode, size_t bytes, PetscBool checksums, OutputFile *file);
 /* see that `bytes` more fit, so that a full disk is found before they are half written */
 PETSC_INTERN void OutputFileReserve(OutputFile *file, size_t bytes);
+/* all that was written so far to the system */
+PETSC_INTERN void OutputFileFlush(OutputFile *file);
 /* Close. After a failure what is not yet on disk is dropped, never half written. Returns whether all went well. */
 PETSC_INTERN PetscBool OutputFileClose(OutputFile *file, PetscBool sync);
 

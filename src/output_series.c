@@ -144,7 +144,7 @@ static PetscErrorCode ReadTables(Series series, OutputFile *file, PetscReal time
   PetscInt64          cells = 0, ids = 0;
 
   PetscFunctionBegin;
-  OutputFileGetSize(file, "/VTKHDF/Steps/Values", &n, NULL, NULL);
+  n = OutputFileGetInt(file, "/VTKHDF/Steps", "NSteps"); // rows beyond belong to a step that was not finished
   OutputFileGetSize(file, "/VTKHDF/NumberOfPoints", &n_parts, NULL, NULL);
   if (n < 0 || n_parts < 0) OutputFileFail(file, "not a series of this program");
   OutputFileGetSize(file, "/VTKHDF/Points", &points, NULL, NULL);
@@ -466,6 +466,8 @@ static void AddStep(Series series, OutputFile *file, const Step *step)
   for (PetscInt f = 0; f < series->n_fields; f++)
     OutputFileAppend(file, In("/VTKHDF/Steps/PointDataOffsets", series->fields[f].name).text, H5T_NATIVE_INT64, 1,
                      &step->point_offset);
+  // only when all of the step is in the file may it be counted: whoever kills the run leaves whole steps
+  OutputFileFlush(file);
   OutputFileSetInts(file, "/VTKHDF/Steps", "NSteps", 1, &n_steps);
 }
 

@@ -6,10 +6,12 @@
 #include "output_file.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static char directory[1024];
@@ -412,6 +414,43 @@ static void a_write_that_fails_late_leaves_the_file_as_it_was(void **state)
   CheckWhole(directory, 3);
 }
 
+/* written without pause until killed; the number of points changes, so that chunks are shared by steps */
+static void WriteUntilKilled(void)
+{
+  Series series;
+
+  if (SeriesCreate(directory, "killed", SERIES_POINTS, "", PETSC_FALSE, 0, &series)) _exit(1);
+  for (int s = 0; !TryWater(series, 0.1 * s, 3000 + s % 3); s++) continue;
+  _exit(1);
+}
+
+static void a_killed_run_leaves_whole_steps(void **state)
+{
+  (void)state;
+  for (int attempt = 0; attempt < 12; attempt++) {
+    const pid_t child = fork();
+    OutputFile  f;
+    double      values[9006], start;
+    PetscInt64  n_steps;
+
+    assert_true(child >= 0);
+    if (!child) WriteUntilKilled();
+    usleep((useconds_t)(30000 + 3700 * attempt));
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    OutputFileOpen(In("killed.vtkhdf"), OUTPUT_READ, 0, PETSC_FALSE, &f);
+    n_steps = OutputFileGetInt(&f, "/VTKHDF/Steps", "NSteps");
+    for (PetscInt64 s = 0; s < n_steps && !f.failed; s++) {
+      const double last = 8999.0 + 3 * (double)(s % 3);
+
+      OutputFileRead(&f, "/VTKHDF/Steps/PointOffsets", H5T_NATIVE_DOUBLE, (size_t)s, 1, &start);
+      OutputFileRead(&f, "/VTKHDF/PointData/velocity", H5T_NATIVE_DOUBLE, (size_t)start, 3000 + (size_t)(s % 3), values);
+      if (!f.failed) assert_close(values[(int)last], sin(last * last + 0.1 * (double)s), 1e-7, 1);
+    }
+    if (!OutputFileClose(&f, PETSC_FALSE) && n_steps > 0) fail_msg("killed after %lld steps: %s", (long long)n_steps, f.reason);
+  }
+}
+
 static void a_damaged_series_is_refused_and_left_alone(void **state)
 {
   Series         series;
@@ -459,7 +498,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(a_full_disk_is_reported_and_results_stay_readable),
       cmocka_unit_test(a_write_that_fails_late_leaves_the_file_as_it_was),
       cmocka_unit_test(what_cannot_be_created_is_one_line_with_the_reason),
-      cmocka_unit_test(a_damaged_series_is_refused_and_left_alone),
+      cmocka_unit_test(a_killed_run_leaves_whole_steps),
+    cmocka_unit_test(a_damaged_series_is_refused_and_left_alone),
       cmocka_unit_test(a_series_resumed_before_its_first_step_begins_anew),
       cmocka_unit_test(a_step_without_particles_is_stored),
       cmocka_unit_test(a_surface_without_fields_can_be_continued),
