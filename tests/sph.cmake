@@ -6,3 +6,7 @@ byssus_test(unit/sph/test_motion base sph)
 byssus_test(unit/sph/test_contacts base sph)
 byssus_test(unit/sph/test_threads base sph)
 byssus_test(unit/sph/test_viscosity base sph)
+
+# the device's loops against the CPU's; 77 = no device here
+byssus_test(backend/test_sph_cuda base sph)
+set_tests_properties(backend.sph_cuda PROPERTIES LABELS "backend;cuda" SKIP_RETURN_CODE 77)
