@@ -37,9 +37,10 @@ typedef struct {
   double v, g[3*PROXY_PATCHES];
 } ProxyDual;
 
-/* a half space or a combination of them: s times the part of the kernel's volume, and a representative normal */
+/* a half space or a combination of them: s times the part of the kernel's volume, a representative normal, the height above it, and how
+   much of the tangent plane its proxies cover */
 typedef struct {
-  ProxyDual y, n[3];
+  ProxyDual y, n[3], z, coverage;
 } ProxyNode;
 
 BY_HD ProxyDual ProxyDualOf(double v)
@@ -119,9 +120,25 @@ BY_HD double ProxyCopulaTheta(double cosine, double *slope)
   return k*k;
 }
 
-/* intersection (convex) or union of two nodes; s = calibration factor carried by both */
-BY_HD void ProxyCombine(int convex, double s, const ProxyNode *a, const ProxyNode *b, ProxyNode *out)
+/* The inside of a node ends where its proxies end: a particle behind it (over 0.2 h) whose tangent plane they do not cover is not in
+   the body but past a bend, or beside a patch that is smaller than the kernel. */
+BY_HD void ProxyTrust(double h, ProxyNode *a)
 {
+  double       slope_c, slope_z;
+  const double covered = ProxySmoothStep(a->coverage.v/PROXY_RIM_COVERAGE, &slope_c), behind = ProxySmoothStep(-a->z.v/(0.2*h), &slope_z);
+
+  if (covered == 1.0 || behind == 0.0) return;
+  const ProxyDual trust = ProxyDualOf2(1.0 - (1.0 - covered)*behind, slope_c*behind/PROXY_RIM_COVERAGE, &a->coverage, (1.0 - covered)*slope_z/(0.2*h), &a->z);
+  a->y = ProxyDualTimes(&a->y, &trust);
+}
+
+/* intersection (convex) or union of two nodes; s = calibration factor carried by both */
+BY_HD void ProxyCombine(int convex, double h, double s, ProxyNode *a, ProxyNode *b, ProxyNode *out)
+{
+  if (!convex) {
+    ProxyTrust(h, a);
+    ProxyTrust(h, b);
+  }
   const ProxyDual cosine = ProxyDualDot(a->n, b->n);
   double          slope, Cu, Cv, Ct, u = a->y.v/s, v = b->y.v/s, C;
   const double    theta = ProxyCopulaTheta(cosine.v, &slope);
@@ -139,6 +156,10 @@ BY_HD void ProxyCombine(int convex, double s, const ProxyNode *a, const ProxyNod
     sum     = ProxyDualSum(1.0, &a->y, 1.0, &b->y);
     out->y  = ProxyDualSum(1.0, &sum, -1.0, &product);
   }
+
+  // in front of an intersection when in front of one, of a union when in front of both
+  out->z        = (a->z.v > b->z.v) == (convex != 0) ? a->z : b->z;
+  out->coverage = ProxyDualSum(1.0, &a->coverage, 1.0, &b->coverage);
 
   // representative normal: an intersection is ruled by the smaller part, a union by the larger
   ProxyDual wa = ProxyDualOf2(convex ? 1.001 - u : 0.001 + u, (convex ? -1.0 : 1.0)/s, &a->y, 0.0, &a->y);
@@ -169,7 +190,7 @@ BY_HD unsigned ProxyComponent(unsigned set, const unsigned related[PROXY_PATCHES
 /* Combine the leaves along a cotree of the relations: no convex pair between two groups -> their union; no concave pair between them ->
    their intersection; else (teeth finer than h) the patch that the particle is farthest behind is taken out by intersection. Pairs
    that are neither convex nor concave fit both ways. Iterative: sets are split first, then evaluated backwards. */
-BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], const unsigned concave[PROXY_PATCHES], const ProxyDual z[],
+BY_HD void ProxyCotree(int n, double h, double s, const unsigned convex[PROXY_PATCHES], const unsigned concave[PROXY_PATCHES],
                        ProxyNode leaf[], ProxyNode *total)
 {
   unsigned set[2*PROXY_PATCHES];
@@ -191,7 +212,7 @@ BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], co
       if (part == set[i]) {
         int deepest = -1;
         for (int p = 0; p < n; p++) {
-          if ((set[i] & (1u << p)) && (deepest < 0 || z[p].v < z[deepest].v)) deepest = p;
+          if ((set[i] & (1u << p)) && (deepest < 0 || leaf[p].z.v < leaf[deepest].z.v)) deepest = p;
         }
         part = 1u << deepest;
       }
@@ -213,7 +234,7 @@ BY_HD void ProxyCotree(int n, double s, const unsigned convex[PROXY_PATCHES], co
         if (parent[j] == i) half[m++] = slot[j];
       }
       ProxyNode out;
-      ProxyCombine(is_convex[i], s, &leaf[half[0]], &leaf[half[1]], &out);
+      ProxyCombine(is_convex[i], h, s, &leaf[half[0]], &leaf[half[1]], &out);
       leaf[half[0]] = out;
       slot[i]       = half[0];
     }
@@ -247,19 +268,20 @@ BY_HD ProxyDual ProxyNeutral(double h, const ProxyDual *z_p, const ProxyDual *z_
 BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch[], double grad[][3])
 {
   ProxyNode leaf[PROXY_PATCHES], total;
-  ProxyDual z[PROXY_PATCHES], coverage = ProxyDualOf(0.0);
+  ProxyDual coverage = ProxyDualOf(0.0);
   unsigned  convex[PROXY_PATCHES], concave[PROXY_PATCHES];
   const double tol = 1e-6*h; // round-off of feet on one plane
 
   // leaves: s lambda, normals, heights
   for (int p = 0; p < n; p++) {
     leaf[p].y = ProxyDualOf(s*patch[p].lambda);
-    z[p]      = ProxyDualOf(patch[p].z);
+    leaf[p].z        = ProxyDualOf(patch[p].z);
+    leaf[p].coverage = ProxyDualOf(patch[p].coverage);
     coverage.v += patch[p].coverage;
     for (int k = 0; k < 3; k++) {
       leaf[p].y.g[3*p + k] = s*patch[p].grad_lambda[k];
-      z[p].g[3*p + k]      = patch[p].grad_z[k];
-      coverage.g[3*p + k]  = patch[p].grad_coverage[k];
+      leaf[p].z.g[3*p + k]        = patch[p].grad_z[k];
+      leaf[p].coverage.g[3*p + k] = coverage.g[3*p + k] = patch[p].grad_coverage[k];
       leaf[p].n[k]         = ProxyDualOf(patch[p].n[k]);
       for (int j = 0; j < 3; j++) leaf[p].n[k].g[3*p + j] = patch[p].grad_n[3*k + j];
     }
@@ -284,7 +306,7 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
       if (p == q || !(convex[p] & (1u << q))) continue;
       const ProxyDual cosine = ProxyDualDot(leaf[p].n, leaf[q].n);
       if (cosine.v > -0.866) continue;
-      const ProxyDual g = ProxyNeutral(h, &z[p], &z[q], &cosine);
+      const ProxyDual g = ProxyNeutral(h, &leaf[p].z, &leaf[q].z, &cosine);
       leaf[q].y = ProxyDualOf2(s - (s - leaf[q].y.v)*(1.0 - g.v), 1.0 - g.v, &leaf[q].y, s - leaf[q].y.v, &g);
     }
   }
@@ -299,7 +321,8 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
     }
   }
 
-  ProxyCotree(n, s, convex, concave, z, leaf, &total);
+  ProxyCotree(n, h, s, convex, concave, leaf, &total);
+  ProxyTrust(h, &total);
   for (int p = 0; p < n; p++) {
     for (int k = 0; k < 3; k++) grad[p][k] = total.y.g[3*p + k];
   }

@@ -238,11 +238,12 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
   }
 }
 
-/* gather the pairs of a particle; returns their number, *n_slots patches among them, sums of weights by slot; 0 when nothing touches */
+/* gather the pairs of a particle; returns their number, *n_slots patches among them, sums of weights by slot, whether the mean height is
+   positive; 0 when nothing touches */
 static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3], PetscInt begin, PetscInt end, Touch touch[], int *n_slots,
-                           PetscInt slots[PROXY_PATCHES], double D[PROXY_PATCHES])
+                           PetscInt slots[PROXY_PATCHES], double D[PROXY_PATCHES], int *in_front)
 {
-  double z_min = PETSC_MAX_REAL;
+  double z_min = PETSC_MAX_REAL, z_sum = 0.0;
   int    n = 0;
 
   *n_slots = 0;
@@ -263,22 +264,24 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
     }
     D[slot] += touch[n].pair.w;
     z_min = PetscMin(z_min, touch[n].pair.z);
+    z_sum += touch[n].pair.w*touch[n].pair.z;
     touch[n].slot  = slot;
     touch[n].proxy = i;
     touch[n].image = (int)(p->cells.entry[e]%27);
     n++;
   }
+  *in_front = z_sum >= 0.0;
   return z_min < p->fluid.h ? n : 0;
 }
 
 /* phi and the gradient's part of each patch at a particle */
 static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3], const Touch touch[], int n, int n_slots,
-                           const PetscInt slots[], const double D[], double grad[][3])
+                           const PetscInt slots[], const double D[], int in_front, double grad[][3])
 {
   ProxyPatchValue value[PROXY_PATCHES];
 
-  // the usual case: one patch, away from open rims
-  if (n_slots == 1 && !p->surface.patch_open[slots[0]]) {
+  // the usual case: in front of one patch without open rims
+  if (n_slots == 1 && !p->surface.patch_open[slots[0]] && in_front) {
     double lambda = 0.0, gD[3] = {0}, g[3] = {0};
     for (int i = 0; i < n; i++) {
       const ProxyPair *q = &touch[i].pair;
@@ -358,11 +361,11 @@ static int ParticleHalfSpace(Chunk *c, const Proxy p, PetscInt particle, const d
 {
   PetscInt  slots[PROXY_PATCHES];
   double    D[PROXY_PATCHES], grad[PROXY_PATCHES][3];
-  int       n_slots;
-  const int n = GatherHalfSpace(p, x, base, begin, end, touch, &n_slots, slots, D);
+  int       n_slots, in_front;
+  const int n = GatherHalfSpace(p, x, base, begin, end, touch, &n_slots, slots, D, &in_front);
 
   if (!n) return 1;
-  const double phi = PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, grad);
+  const double phi = PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, in_front, grad);
   return phi > 0.0 ? Emit(c, p, particle, x, base, phi, touch, n, D, grad) : 1;
 }
 

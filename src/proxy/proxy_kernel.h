@@ -14,6 +14,8 @@
 #define PROXY_ELLIPSOID_FADE 0.25
 /* in front, weights end over this part of h before z_max; nothing acts beyond z = h anyway */
 #define PROXY_FRONT_FADE 0.5
+/* the osculating surface is used from its own side only: weights end where 1 + c z0 falls from this to 0 (a ball's equator) */
+#define PROXY_SIDE_FADE 0.5
 
 /* one proxy as the pair formulas see it */
 typedef struct {
@@ -155,9 +157,10 @@ BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const do
 {
   const double z0 = Dot3(b->n, r), R = b->radius[0], z_max = b->radius[1], H = 0.5*(b->S[0] + b->S[1] + b->S[2]);
   const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]}, t2 = Dot3(t, t);
+  const double side = (1.0 + b->bend*z0)/PROXY_SIDE_FADE;
   double       F, cut = 1.0, cut_slope = 0.0, w, z, d, slope, K;
 
-  if (t2 >= R*R) return 0;
+  if (t2 >= R*R || side <= 0.0) return 0;
   z = ProxyHeight(b, z0, t, pair->grad_z) - b->offset;
   if (z <= -h || z >= z_max) return 0;
 
@@ -171,6 +174,8 @@ BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const do
     cut       = ProxySmoothStep((z_max - z) / (PROXY_FRONT_FADE*h), &slope);
     cut_slope = -slope / (PROXY_FRONT_FADE*h);
   }
+  const double near_side = ProxySmoothStep(side, &slope), side_slope = w*slope*b->bend/PROXY_SIDE_FADE;
+  w *= near_side, F *= near_side;
 
   // profile above the osculating surface; K' = -2 z A/h^2
   const double bend = 1.0/(1.0 + b->bend*z), Hz = H*bend;
@@ -183,8 +188,8 @@ BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const do
   slope        = -SPHPlaneDensity(kernel, d, h) * (1.0 - Hz*z) + K*Hz*bend*b->bend;
   for (int k = 0; k < 3; k++) {
     pair->grad_lambda[k] = slope * pair->grad_z[k];
-    pair->grad_cover[k]  = b->weight * F*t[k];
-    pair->grad_w[k]      = b->weight * (F*cut*t[k] + w*cut_slope*pair->grad_z[k]);
+    pair->grad_cover[k]  = b->weight * (F*t[k] + side_slope*b->n[k]);
+    pair->grad_w[k]      = b->weight * (F*cut*t[k] + w*cut_slope*pair->grad_z[k] + side_slope*cut*b->n[k]);
   }
   return 1;
 }

@@ -179,7 +179,7 @@ static PetscErrorCode BuildPatches(ProxySurface *s)
     for (int k = 0; k < 2; k++) {
       const PetscInt t = s->edge_triangles[2*e + k];
       if (t < 0) s->patch_open[s->patch[s->edge_triangles[2*e]]] = PETSC_TRUE;
-      else if (s->edge_triangles[2*e + 1] >= 0) s->patch_sharp[s->patch[t]] = PETSC_TRUE;
+      else if (s->edge_triangles[2*e + 1] >= 0 && s->patch[s->edge_triangles[2*e]] != s->patch[s->edge_triangles[2*e + 1]]) s->patch_sharp[s->patch[t]] = PETSC_TRUE;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -189,6 +189,52 @@ static PetscInt FindRoot(PetscInt parent[], PetscInt i)
 {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
+}
+
+/* A patch of less than h^2/4 is noise at the kernel's scale (a fold of a scanned mesh): it joins the neighbour with which it shares the
+   longest border, so that its plane does not act as a half space. */
+static PetscErrorCode AbsorbSmallPatches(PetscReal h, ProxySurface *s)
+{
+  PetscReal *area, *border;
+  PetscInt   joined = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc2(s->n_patches, &area, s->n_patches, &border));
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    const PetscInt *v = &s->triangles[3*t];
+    double          e1[3], e2[3], c[3];
+    Sub3(&s->X[3*v[1]], &s->X[3*v[0]], e1);
+    Sub3(&s->X[3*v[2]], &s->X[3*v[0]], e2);
+    Cross3(e1, e2, c);
+    area[s->patch[t]] += 0.5*Norm3(c);
+  }
+  for (PetscInt p = 0; p < s->n_patches; p++) {
+    PetscInt best = -1;
+    if (area[p] >= 0.25*h*h) continue;
+    for (int pass = 0; pass < 2; pass++) { // measure the borders, then open the longest
+      for (PetscInt e = 0; e < s->n_edges; e++) {
+        const PetscInt t = s->edge_triangles[2*e], u = s->edge_triangles[2*e + 1];
+        if (!s->edge_sharp[e] || u < 0 || s->patch[t] == s->patch[u] || (s->patch[t] != p && s->patch[u] != p)) continue;
+        const PetscInt other = s->patch[t] == p ? s->patch[u] : s->patch[t];
+        double         r[3];
+        Sub3(&s->X[3*s->edge_nodes[2*e + 1]], &s->X[3*s->edge_nodes[2*e]], r);
+        if (!pass) border[other] += Norm3(r);
+        else if (other == best) s->edge_sharp[e] = PETSC_FALSE, joined++;
+      }
+      for (PetscInt q = 0; !pass && q < s->n_patches; q++) {
+        if (border[q] > (best < 0 ? 0.0 : border[best])) best = q;
+      }
+      if (best < 0) break;
+    }
+    PetscCall(PetscArrayzero(border, s->n_patches));
+  }
+  PetscCall(PetscFree2(area, border));
+  if (joined) {
+    PetscCall(PetscFree(s->patch));
+    PetscCall(PetscFree2(s->patch_open, s->patch_sharp));
+    PetscCall(BuildPatches(s));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* fans: corners of one vertex that meet across smooth edges (union-find over corners), numbered by their first corner */
@@ -240,6 +286,7 @@ PetscErrorCode ProxySurfaceBuild(const char key[], PetscReal feature_angle, cons
   ByCall(BuildEdges(key, surface));
   MarkSharp(feature_angle, surface);
   PetscCall(BuildPatches(surface));
+  PetscCall(AbsorbSmallPatches(fluid->h, surface));
   PetscCall(BuildFans(surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
