@@ -49,7 +49,8 @@ static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
   for (int i = 0; i < n; i++) {
     // a particle that touches nothing has no pressure
     const PetscReal S = sph->diagonal[i] > tiny ? 1.0 / sqrt(sph->diagonal[i]) : 0.0;
-    const PetscReal b = relax * PetscMax(sph->rho[i] - rho0, sph->wall_excess[i]) + dt * (sph->rate[i] - sph->wall_rate[i]);
+    const PetscReal excess = PetscMax(sph->rho[i] - rho0, sph->wall_excess[i]);
+    const PetscReal b      = SPHSourceShare(excess / rho0, relax) * excess + dt * (sph->rate[i] - sph->wall_rate[i]);
 
     sph->scale[i] = S;
     sph->rhs[i]   = S * b;
