@@ -2,10 +2,10 @@
 
      bench.tled MESH.msh [seconds]
 
-   For each element and law, on one thread and on all, for `seconds` (default 2) each: nanoseconds per element and time step (the whole step:
-   forces, gathering, motion), the mean and the fastest 200 steps, which other programs on the machine lengthen least; beside it the same
-   steps' energy error (the worst, over the most energy that moved), since a step that blows up is fast too. Last the tangent's assembly.
-   The mesh is held at its group "clamp" or "root". */
+   For each element and law, on one thread and on all, for `seconds` (default 2) each: nanoseconds per element and time step (the
+   whole step: forces, gathering, motion), the mean and the fastest 200 steps, which other programs on the machine lengthen least;
+   beside it the same steps' energy error (the worst, over the most energy that moved), since a step that blows up is fast too. Last
+   the tangent's assembly. The mesh is held at its group "clamp" or "root". */
 #include "tled/tled.h"
 #include <omp.h>
 #include <petsctime.h>
@@ -19,12 +19,13 @@ static PetscErrorCode NewBody(const char mesh[], int element, int law, TLED *tle
 {
   TLEDParams     *p;
   const PetscReal g[3] = {0.0, 0.0, -9.81};
-  FILE           *f = fopen(mesh, "r");
+  FILE           *f    = fopen(mesh, "r");
   char            line[256];
   const char     *held = NULL;
 
   PetscFunctionBegin;
-  while (f && !held && fgets(line, sizeof line, f)) held = strstr(line, "\"clamp\"") ? "clamp" : strstr(line, "\"root\"") ? "root" : NULL;
+  while (f && !held && fgets(line, sizeof line, f))
+    held = strstr(line, "\"clamp\"") ? "clamp" : strstr(line, "\"root\"") ? "root" : NULL;
   if (f) fclose(f);
   PetscCall(TLEDCreate(PETSC_COMM_SELF, "body", tled));
   PetscCall(TLEDGetParams(*tled, &p));
@@ -47,27 +48,27 @@ static PetscErrorCode Measure(const char mesh[], int element, int law, int threa
   TLEDStats      s;
   PetscInt       n_tets, n, steps = 0;
   PetscReal      dt, moving = 0.0, worst = 0.0;
-  PetscLogDouble t0, t1, total = 0.0;
+  PetscLogDouble t0, t1, total           = 0.0;
 
   PetscFunctionBegin;
   omp_set_num_threads(threads);
   ByCall(NewBody(mesh, element, law, &tled));
   PetscCall(TLEDGetSize(tled, NULL, &n_tets));
   ByCall(TLEDGetCriticalStep(tled, &dt));
-  ByCall(TLEDAdvance(tled, 0.9*dt*50, &n)); /* warm */
+  ByCall(TLEDAdvance(tled, 0.9 * dt * 50, &n)); /* warm */
   ns[1] = PETSC_MAX_REAL;
   while (total < seconds) {
     PetscCall(PetscTime(&t0));
-    ByCall(TLEDAdvance(tled, 0.9*dt*200, &n));
+    ByCall(TLEDAdvance(tled, 0.9 * dt * 200, &n));
     PetscCall(PetscTime(&t1));
-    ns[1] = PetscMin(ns[1], 1e9*(t1 - t0) / ((double)n*(double)n_tets));
+    ns[1] = PetscMin(ns[1], 1e9 * (t1 - t0) / ((double)n * (double)n_tets));
     total += t1 - t0;
     steps += n;
     PetscCall(TLEDGetStats(tled, &s));
     moving = PetscMax(moving, s.kinetic + s.strain);
     worst  = PetscMax(worst, PetscAbsReal(s.kinetic + s.strain + s.gravity_potential));
   }
-  ns[0]  = 1e9*total / ((double)steps*(double)n_tets);
+  ns[0]  = 1e9 * total / ((double)steps * (double)n_tets);
   *error = worst / moving;
   PetscCall(TLEDDestroy(&tled));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,7 +88,7 @@ static PetscErrorCode MeasureTangent(const char mesh[], double *ms)
   PetscCall(PetscTime(&t0));
   for (int i = 0; i < 10; i++) PetscCall(TLEDTangent(tled, u, &K));
   PetscCall(PetscTime(&t1));
-  *ms = 1e2*(t1 - t0);
+  *ms = 1e2 * (t1 - t0);
   PetscCall(MatDestroy(&K));
   PetscCall(TLEDDestroy(&tled));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,7 +118,7 @@ static PetscErrorCode Run(const char mesh[], double seconds)
     }
   }
   ByCall(MeasureTangent(mesh, &ms));
-  printf("tangent (t4): %.2f ms, %.0f ns per element\n", ms, 1e6*ms / (double)n_tets);
+  printf("tangent (t4): %.2f ms, %.0f ns per element\n", ms, 1e6 * ms / (double)n_tets);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -82,7 +82,7 @@ PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3])
 static PetscErrorCode MarkNodes(TLED tled, const char key[], const Names *names, signed char motion)
 {
   const TLEDGroup *group;
-  char             full[2*BY_NAME_MAX];
+  char             full[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(full, sizeof full, "%s.%s", ((PetscObject)tled)->name, key));
@@ -91,7 +91,10 @@ static PetscErrorCode MarkNodes(TLED tled, const char key[], const Names *names,
     for (PetscInt k = 0; k < group->n_nodes; k++) {
       signed char *mark = &tled->motion[group->nodes[k]];
       if (*mark && *mark != motion)
-        PetscFunctionReturn(InputError(full, "names the group %s, which shares nodes with a group of the other of fixed and prescribed\n  a node can only be held or moved", names->name[i]));
+        PetscFunctionReturn(InputError(full,
+                                       "names the group %s, which shares nodes with a group of the other of fixed and prescribed\n "
+                                       " a node can only be held or moved",
+                                       names->name[i]));
       *mark = motion;
     }
   }
@@ -102,9 +105,9 @@ static PetscErrorCode MarkNodes(TLED tled, const char key[], const Names *names,
 static PetscErrorCode PickWetted(TLED tled)
 {
   const Names     *names = &tled->params.wetted;
-  const TLEDMesh  *mesh = &tled->mesh;
+  const TLEDMesh  *mesh  = &tled->mesh;
   const TLEDGroup *group;
-  char             full[2*BY_NAME_MAX];
+  char             full[2 * BY_NAME_MAX];
   PetscBool       *wet;
 
   PetscFunctionBegin;
@@ -116,10 +119,10 @@ static PetscErrorCode PickWetted(TLED tled)
     ByCall(ierr);
     for (PetscInt k = 0; k < group->n_triangles; k++) wet[group->triangles[k]] = PETSC_TRUE;
   }
-  PetscCall(PetscMalloc1(3*mesh->n_triangles, &tled->wetted));
+  PetscCall(PetscMalloc1(3 * mesh->n_triangles, &tled->wetted));
   for (PetscInt t = 0; t < mesh->n_triangles; t++) {
     if (names->n && !wet[t]) continue;
-    PetscCall(PetscArraycpy(&tled->wetted[3*tled->n_wetted++], &mesh->triangles[3*t], 3));
+    PetscCall(PetscArraycpy(&tled->wetted[3 * tled->n_wetted++], &mesh->triangles[3 * t], 3));
   }
   PetscCall(PetscFree(wet));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,10 +136,10 @@ static PetscErrorCode LumpMass(TLED tled)
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(tled->mesh.n_nodes, &tled->mass));
   tled->volume = 0.0;
-  for (int l = 0; l < TLED_LANES*b->n_packs; l++) {
+  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
     if (b->element[l] < 0) continue;
     tled->volume += b->V0[l];
-    for (int a = 0; a < 4; a++) tled->mass[tled->mesh.tets[4*b->element[l] + a]] += 0.25*tled->params.density*b->V0[l];
+    for (int a = 0; a < 4; a++) tled->mass[tled->mesh.tets[4 * b->element[l] + a]] += 0.25 * tled->params.density * b->V0[l];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -150,19 +153,19 @@ static PetscErrorCode SetUpLoops(TLED tled)
   w->blocks = &tled->blocks;
   w->law    = p->material == TLED_MATERIAL_NEO_HOOKEAN ? TLED_LAW_NEO_HOOKEAN : TLED_LAW_ST_VENANT_KIRCHHOFF;
   w->anp    = p->element == TLED_ELEMENT_ANP || (p->element == TLED_ELEMENT_AUTO && p->poisson > 0.4);
-  w->mu     = p->young / (2.0*(1.0 + p->poisson));
-  w->lambda = p->young*p->poisson / ((1.0 + p->poisson)*(1.0 - 2.0*p->poisson));
-  PetscCall(PetscMalloc2(3*tled->blocks.n_slots, &w->partial, tled->blocks.n_blocks, &w->status));
+  w->mu     = p->young / (2.0 * (1.0 + p->poisson));
+  w->lambda = p->young * p->poisson / ((1.0 + p->poisson) * (1.0 - 2.0 * p->poisson));
+  PetscCall(PetscMalloc2(3 * tled->blocks.n_slots, &w->partial, tled->blocks.n_blocks, &w->status));
   if (w->anp) {
     PetscCall(PetscMalloc3(tled->mesh.n_nodes, &w->nodal, tled->mesh.n_nodes, &w->pressure, tled->mesh.n_nodes, &w->weight));
-    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 0.25*p->density / tled->mass[a];
+    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 0.25 * p->density / tled->mass[a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode CreateVectors(TLED tled)
 {
-  const PetscInt n = 3*tled->mesh.n_nodes, n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
+  const PetscInt n = 3 * tled->mesh.n_nodes, n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
   PetscReal     *v;
 
   PetscFunctionBegin;
@@ -175,12 +178,14 @@ static PetscErrorCode CreateVectors(TLED tled)
   PetscCall(VecDuplicate(tled->u, &tled->f));
   PetscCall(VecSet(tled->f, 0.0));
   PetscCall(PetscMalloc5(n, &tled->x, n, &tled->force, n, &tled->probe, n, &tled->mode, n, &tled->trial));
-  PetscCall(PetscMalloc3(5*n, &tled->krylov, 4*n, &tled->saved, n_chunks*TLED_SUMS, &tled->sums));
+  PetscCall(PetscMalloc3(5 * n, &tled->krylov, 4 * n, &tled->saved, n_chunks * TLED_SUMS, &tled->sums));
   PetscCall(PetscArrayzero(tled->mode, n));
-  PetscCall(PetscArrayzero(tled->sums, n_chunks*TLED_SUMS));
+  PetscCall(PetscArrayzero(tled->sums, n_chunks * TLED_SUMS));
   PetscCall(VecGetArrayWrite(tled->v, &v));
   for (PetscInt k = 0; k < n; k++)
-    v[k] = tled->motion[k / 3] == TLED_FREE ? tled->params.velocity[k % 3] : tled->motion[k / 3] == TLED_PRESCRIBED ? tled->params.prescribed_velocity[k % 3] : 0.0;
+    v[k] = tled->motion[k / 3] == TLED_FREE         ? tled->params.velocity[k % 3]
+           : tled->motion[k / 3] == TLED_PRESCRIBED ? tled->params.prescribed_velocity[k % 3]
+                                                    : 0.0;
   PetscCall(VecRestoreArrayWrite(tled->v, &v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -196,7 +201,7 @@ static PetscErrorCode CreateVectors(TLED tled)
 @*/
 PetscErrorCode TLEDSetUp(TLED tled)
 {
-  char key[2*BY_NAME_MAX];
+  char key[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
   PetscCheck(!tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() was called before");
@@ -229,8 +234,11 @@ PetscErrorCode TLEDView(TLED tled, PetscViewer viewer)
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)tled, viewer));
   PetscCall(PetscViewerASCIIPushTab(viewer));
   if (tled->set_up) {
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " nodes, %" PetscInt_FMT " tetrahedra in %d blocks, %" PetscInt_FMT " boundary triangles (%" PetscInt_FMT " wetted), volume %g m^3, element %s\n", tled->mesh.n_nodes,
-                                     tled->mesh.n_tets, tled->blocks.n_blocks, tled->mesh.n_triangles, tled->n_wetted, (double)tled->volume, tled->loops.anp ? "anp" : "t4"));
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "%" PetscInt_FMT " nodes, %" PetscInt_FMT " tetrahedra in %d blocks, %" PetscInt_FMT
+                                     " boundary triangles (%" PetscInt_FMT " wetted), volume %g m^3, element %s\n",
+                                     tled->mesh.n_nodes, tled->mesh.n_tets, tled->blocks.n_blocks, tled->mesh.n_triangles,
+                                     tled->n_wetted, (double)tled->volume, tled->loops.anp ? "anp" : "t4"));
     if (tled->state.critical > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "critical step %g s\n", (double)tled->state.critical));
   }
   PetscCall(KeysView(TLEDKeys, &tled->params, viewer));

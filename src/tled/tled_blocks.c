@@ -1,4 +1,5 @@
-/* tled_blocks.c - tetrahedra cut into cache-sized blocks by METIS, nodes and elements renumbered along them, packed for vector loops. */
+/* tled_blocks.c - tetrahedra cut into cache-sized blocks by METIS, nodes and elements renumbered along them, packed for vector
+ * loops. */
 #include "tled/tled_impl.h"
 #include "tled/tled_element.h"
 #include <metis.h>
@@ -12,15 +13,17 @@ static PetscErrorCode CutElements(const TLEDMesh *mesh, PetscInt part[])
   int    status;
 
   PetscFunctionBegin;
-  n_parts = (n_tets + (TLED_BLOCK_TETS*7)/8 - 1) / ((TLED_BLOCK_TETS*7)/8); /* an eighth of room for METIS's imbalance */
-  PetscCall(PetscMalloc4(n_tets + 1, &offset, 4*n_tets, &corner, n_tets, &element_part, n_nodes, &node_part));
-  for (PetscInt e = 0; e <= n_tets; e++) offset[e] = 4*e;
-  for (PetscInt k = 0; k < 4*n_tets; k++) corner[k] = mesh->tets[k];
+  n_parts = (n_tets + (TLED_BLOCK_TETS * 7) / 8 - 1) / ((TLED_BLOCK_TETS * 7) / 8); /* an eighth of room for METIS's imbalance */
+  PetscCall(PetscMalloc4(n_tets + 1, &offset, 4 * n_tets, &corner, n_tets, &element_part, n_nodes, &node_part));
+  for (PetscInt e = 0; e <= n_tets; e++) offset[e] = 4 * e;
+  for (PetscInt k = 0; k < 4 * n_tets; k++) corner[k] = mesh->tets[k];
   for (PetscInt e = 0; e < n_tets; e++) element_part[e] = 0;
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_PTYPE] = METIS_PTYPE_RB;
   options[METIS_OPTION_SEED]  = 1;
-  status = n_parts > 1 ? METIS_PartMeshDual(&n_tets, &n_nodes, offset, corner, NULL, NULL, &n_common, &n_parts, NULL, options, &cut, element_part, node_part) : METIS_OK;
+  status = n_parts > 1 ? METIS_PartMeshDual(&n_tets, &n_nodes, offset, corner, NULL, NULL, &n_common, &n_parts, NULL, options, &cut,
+                                            element_part, node_part)
+                       : METIS_OK;
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS_PartMeshDual failed with status %d", status);
   for (PetscInt e = 0; e < n_tets; e++) part[e] = element_part[e];
   PetscCall(PetscFree4(offset, corner, element_part, node_part));
@@ -43,22 +46,22 @@ static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
     first = e + 1;
   }
   for (PetscInt a = 0; a < mesh->n_nodes; a++) number[a] = -1;
-  PetscCall(PetscMalloc3(3*mesh->n_nodes, &X, 4*mesh->n_tets, &tets, mesh->n_tets, &tag));
+  PetscCall(PetscMalloc3(3 * mesh->n_nodes, &X, 4 * mesh->n_tets, &tets, mesh->n_tets, &tag));
   for (PetscInt e = 0; e < mesh->n_tets; e++) {
     tag[e] = mesh->tag[order[e]];
     for (PetscInt a = 0; a < 4; a++) {
-      const PetscInt old = mesh->tets[4*order[e] + a];
+      const PetscInt old = mesh->tets[4 * order[e] + a];
       if (number[old] < 0) {
-        for (PetscInt k = 0; k < 3; k++) X[3*n + k] = mesh->X[3*old + k];
+        for (PetscInt k = 0; k < 3; k++) X[3 * n + k] = mesh->X[3 * old + k];
         number[old] = n++;
       }
-      tets[4*e + a] = number[old];
+      tets[4 * e + a] = number[old];
     }
   }
-  for (PetscInt k = 0; k < 3*mesh->n_triangles; k++) mesh->triangles[k] = number[mesh->triangles[k]];
+  for (PetscInt k = 0; k < 3 * mesh->n_triangles; k++) mesh->triangles[k] = number[mesh->triangles[k]];
   for (PetscInt g = 0; g < mesh->n_groups; g++) {
     TLEDGroup *group = &mesh->groups[g];
-    m = 0;
+    m                = 0;
     for (PetscInt i = 0; i < group->n_nodes; i++)
       if (number[group->nodes[i]] >= 0) group->nodes[m++] = number[group->nodes[i]];
     group->n_nodes = m;
@@ -70,8 +73,8 @@ static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Walk the elements in order and close a block when its part ends or it is full. With `blocks` NULL's arrays (n_* only) it counts; the
-   second walk fills. local_of[a] and block_of[a] are work of n_nodes. */
+/* Walk the elements in order and close a block when its part ends or it is full. With `blocks` NULL's arrays (n_* only) it counts;
+   the second walk fills. local_of[a] and block_of[a] are work of n_nodes. */
 static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of[], int local_of[], TLEDBlocks *b, PetscBool fill)
 {
   int n_in_block = 0, n_nodes = 0, lane;
@@ -87,15 +90,15 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
     if (n_in_block % TLED_LANES == 0) b->n_packs++;
     lane = n_in_block++ % TLED_LANES;
     for (PetscInt k = 0; k < 4; k++) {
-      const PetscInt a = mesh->tets[4*e + k];
+      const PetscInt a = mesh->tets[4 * e + k];
       if (block_of[a] != b->n_blocks) {
         block_of[a] = b->n_blocks, local_of[a] = n_nodes++;
         if (fill) b->node[b->n_slots] = (int)a;
         b->n_slots++;
       }
-      if (fill) b->local[(4*(b->n_packs - 1) + k)*TLED_LANES + lane] = local_of[a];
+      if (fill) b->local[(4 * (b->n_packs - 1) + k) * TLED_LANES + lane] = local_of[a];
     }
-    if (fill) b->element[(b->n_packs - 1)*TLED_LANES + lane] = (int)e;
+    if (fill) b->element[(b->n_packs - 1) * TLED_LANES + lane] = (int)e;
   }
   if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
 }
@@ -103,14 +106,14 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
 /* gradients and volumes of each lane */
 static void FillGeometry(const TLEDMesh *mesh, TLEDBlocks *b)
 {
-  for (int l = 0; l < b->n_packs*TLED_LANES; l++) {
+  for (int l = 0; l < b->n_packs * TLED_LANES; l++) {
     const int pack = l / TLED_LANES, lane = l % TLED_LANES, e = b->element[l];
     double    x[12], G[9] = {0.0};
     if (e < 0) continue;
     for (int a = 0; a < 4; a++)
-      for (int k = 0; k < 3; k++) x[3*a + k] = mesh->X[3*mesh->tets[4*e + a] + k];
+      for (int k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[4 * e + a] + k];
     b->V0[l] = TLEDReferenceGradients(x, G);
-    for (int k = 0; k < 9; k++) b->G[(9*pack + k)*TLED_LANES + lane] = G[k];
+    for (int k = 0; k < 9; k++) b->G[(9 * pack + k) * TLED_LANES + lane] = G[k];
   }
 }
 
@@ -152,8 +155,9 @@ PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *b)
   b->n_nodes = (int)mesh->n_nodes;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_FALSE);
   PetscCall(PetscMalloc3(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node));
-  PetscCall(PetscCalloc4(4*b->n_packs*TLED_LANES, &b->local, b->n_packs*TLED_LANES, &b->element, 9*b->n_packs*TLED_LANES, &b->G, b->n_packs*TLED_LANES, &b->V0));
-  for (int l = 0; l < b->n_packs*TLED_LANES; l++) b->element[l] = -1;
+  PetscCall(PetscCalloc4(4 * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element, 9 * b->n_packs * TLED_LANES,
+                         &b->G, b->n_packs * TLED_LANES, &b->V0));
+  for (int l = 0; l < b->n_packs * TLED_LANES; l++) b->element[l] = -1;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_TRUE);
   FillGeometry(mesh, b);
   PetscCall(FillSlots(b));

@@ -2,38 +2,39 @@
 #include "tled/tled_impl.h"
 #include <petscblaslapack.h>
 
-#define CHANGE      1e-4  /* of omega^2 in one step, at which the iteration has settled */
-#define N_CALM      3     /* that many calm steps in a row                              */
+#define CHANGE 1e-4 /* of omega^2 in one step, at which the iteration has settled */
+#define N_CALM 3    /* that many calm steps in a row                              */
 
 /* (x, y) with the lumped mass; constrained nodes hold zeros */
 static PetscReal MassDot(TLED tled, const PetscReal x[], const PetscReal y[])
 {
   PetscReal sum = 0.0;
 
-  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) sum += tled->mass[a]*(x[3*a]*y[3*a] + x[3*a + 1]*y[3*a + 1] + x[3*a + 2]*y[3*a + 2]);
+  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++)
+    sum += tled->mass[a] * (x[3 * a] * y[3 * a] + x[3 * a + 1] * y[3 * a + 1] + x[3 * a + 2] * y[3 * a + 2]);
   return sum;
 }
 
 static void Axpy(PetscInt n, PetscReal c, const PetscReal x[], PetscReal y[])
 {
-  for (PetscInt k = 0; k < n; k++) y[k] += c*x[k];
+  for (PetscInt k = 0; k < n; k++) y[k] += c * x[k];
 }
 
-/* y = M^-1 K(u) x by a central difference of the forces, exact tangent to about ten digits: the step moves no node by more than 1e-6 of
-   the element size */
+/* y = M^-1 K(u) x by a central difference of the forces, exact tangent to about ten digits: the step moves no node by more than
+   1e-6 of the element size */
 static PetscErrorCode ApplyTangent(TLED tled, const PetscReal u[], const PetscReal x[], PetscReal y[])
 {
-  const PetscInt n = 3*tled->mesh.n_nodes;
+  const PetscInt n   = 3 * tled->mesh.n_nodes;
   PetscReal      top = 0.0, eps;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < n; k++) top = PetscMax(top, PetscAbsReal(x[k]));
-  eps = 1e-6*PetscPowReal(tled->volume / (PetscReal)tled->mesh.n_tets, 1.0/3.0) / top;
-  for (PetscInt k = 0; k < n; k++) tled->probe[k] = u[k] + eps*x[k];
+  eps = 1e-6 * PetscPowReal(tled->volume / (PetscReal)tled->mesh.n_tets, 1.0 / 3.0) / top;
+  for (PetscInt k = 0; k < n; k++) tled->probe[k] = u[k] + eps * x[k];
   ByCall(TLEDForces_Private(tled, tled->probe, y));
-  for (PetscInt k = 0; k < n; k++) tled->probe[k] = u[k] - eps*x[k];
+  for (PetscInt k = 0; k < n; k++) tled->probe[k] = u[k] - eps * x[k];
   ByCall(TLEDForces_Private(tled, tled->probe, tled->trial));
-  for (PetscInt k = 0; k < n; k++) y[k] = tled->motion[k / 3] ? 0.0 : (y[k] - tled->trial[k]) / (2.0*eps*tled->mass[k / 3]);
+  for (PetscInt k = 0; k < n; k++) y[k] = tled->motion[k / 3] ? 0.0 : (y[k] - tled->trial[k]) / (2.0 * eps * tled->mass[k / 3]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,8 +43,8 @@ static void StartVector(TLED tled, PetscReal x[])
 {
   unsigned seed = 12345u;
 
-  for (PetscInt k = 0; k < 3*tled->mesh.n_nodes; k++) {
-    seed = 1664525u*seed + 1013904223u;
+  for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) {
+    seed = 1664525u * seed + 1013904223u;
     x[k] = tled->motion[k / 3] ? 0.0 : (PetscReal)(seed >> 8) / 16777216.0 - 0.5;
   }
 }
@@ -51,9 +52,9 @@ static void StartVector(TLED tled, PetscReal x[])
 /* Make w[k] mass-orthonormal to w[0..k-1], its image aw[k] along with it; returns 0 when nothing is left. */
 static PetscBool Orthonormalise(TLED tled, PetscInt k, PetscReal *w[], PetscReal *aw[])
 {
-  const PetscInt  n = 3*tled->mesh.n_nodes;
+  const PetscInt  n      = 3 * tled->mesh.n_nodes;
   const PetscReal before = MassDot(tled, w[k], w[k]);
-  PetscReal       norm = before;
+  PetscReal       norm   = before;
 
   if (!(before > 0.0)) return PETSC_FALSE;
   for (PetscInt pass = 0; pass < 2; pass++) {
@@ -63,7 +64,7 @@ static PetscBool Orthonormalise(TLED tled, PetscInt k, PetscReal *w[], PetscReal
       if (aw[k]) Axpy(n, -c, aw[j], aw[k]);
     }
     norm = MassDot(tled, w[k], w[k]);
-    if (!(norm > 1e-20*before)) return PETSC_FALSE;
+    if (!(norm > 1e-20 * before)) return PETSC_FALSE;
   }
   norm = 1.0 / PetscSqrtReal(norm);
   for (PetscInt i = 0; i < n; i++) w[k][i] *= norm;
@@ -79,11 +80,11 @@ static PetscErrorCode RayleighRitz(TLED tled, PetscInt m, PetscReal *w[], PetscR
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j <= i; j++) B[m*i + j] = B[m*j + i] = MassDot(tled, w[i], aw[j]);
+    for (PetscInt j = 0; j <= i; j++) B[m * i + j] = B[m * j + i] = MassDot(tled, w[i], aw[j]);
   LAPACKsyev_("V", "U", &n, B, &n, values, work, &n_work, &info);
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev failed with info %d", (int)info);
   *top = values[m - 1];
-  for (PetscInt i = 0; i < m; i++) c[i] = B[m*(m - 1) + i];
+  for (PetscInt i = 0; i < m; i++) c[i] = B[m * (m - 1) + i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,13 +110,13 @@ static PetscErrorCode RayleighRitz(TLED tled, PetscInt m, PetscReal *w[], PetscR
 */
 PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt n_steps, PetscReal *dt)
 {
-  const PetscInt n = 3*tled->mesh.n_nodes;
-  PetscReal     *k = tled->krylov, *w[3] = {tled->mode, k, k + n}, *aw[3] = {k + 2*n, k + 3*n, k + 4*n}, top = 0.0, last, c[3];
-  PetscInt       calm = 0, m = 1;
+  const PetscInt n = 3 * tled->mesh.n_nodes;
+  PetscReal *k = tled->krylov, *w[3] = {tled->mode, k, k + n}, *aw[3] = {k + 2 * n, k + 3 * n, k + 4 * n}, top = 0.0, last, c[3];
+  PetscInt   calm = 0, m = 1;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(TLED_EVENT_CRITICAL, tled, 0, 0, 0));
-  *dt = PETSC_MAX_REAL;
+  *dt                = PETSC_MAX_REAL;
   PetscReal *none[3] = {NULL, NULL, NULL};
   if (!Orthonormalise(tled, 0, w, none)) {
     StartVector(tled, w[0]);
@@ -125,19 +126,19 @@ PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt
   top = MassDot(tled, w[0], aw[0]);
   for (PetscInt step = 0; step < n_steps && calm < N_CALM; step++) {
     /* residual as the new direction; it goes into slot 1, the last direction lives in slot 2 */
-    for (PetscInt i = 0; i < n; i++) w[1][i] = aw[0][i] - top*w[0][i];
+    for (PetscInt i = 0; i < n; i++) w[1][i] = aw[0][i] - top * w[0][i];
     if (!Orthonormalise(tled, 1, w, none)) break;
     ByCall(ApplyTangent(tled, u, w[1], aw[1]));
     if (m == 3 && !Orthonormalise(tled, 2, w, aw)) m = 2;
     last = top;
     PetscCall(RayleighRitz(tled, PetscMax(m, 2), w, aw, &top, c));
     for (PetscInt i = 0; i < n; i++) {
-      const PetscReal p = c[1]*w[1][i] + (m == 3 ? c[2]*w[2][i] : 0.0), ap = c[1]*aw[1][i] + (m == 3 ? c[2]*aw[2][i] : 0.0);
-      w[0][i] = c[0]*w[0][i] + p, aw[0][i] = c[0]*aw[0][i] + ap;
+      const PetscReal p = c[1] * w[1][i] + (m == 3 ? c[2] * w[2][i] : 0.0), ap = c[1] * aw[1][i] + (m == 3 ? c[2] * aw[2][i] : 0.0);
+      w[0][i] = c[0] * w[0][i] + p, aw[0][i] = c[0] * aw[0][i] + ap;
       w[2][i] = p, aw[2][i] = ap;
     }
     m    = 3;
-    calm = top - last < CHANGE*top ? calm + 1 : 0;
+    calm = top - last < CHANGE * top ? calm + 1 : 0;
   }
   if (top > 0.0) *dt = 2.0 / PetscSqrtReal(top);
 done:

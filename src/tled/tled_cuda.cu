@@ -6,7 +6,8 @@
 #define LANES   8   /* TLED_LANES: elements side by side in the structures of arrays */
 #define THREADS 128 /* per block: enough to hide memory latency with the registers that a tetrahedron takes */
 
-static __global__ void ElementForces(int law, double mu, double lambda, int n_lanes, const int *corner, const double *G, const double *V0, const double *u, double *corner_force)
+static __global__ void ElementForces(int law, double mu, double lambda, int n_lanes, const int *corner, const double *G,
+                                     const double *V0, const double *u, double *corner_force)
 {
   const int l = blockIdx.x*blockDim.x + threadIdx.x, pack = l / LANES, lane = l % LANES;
   int       n[4];
@@ -35,7 +36,8 @@ static __global__ void GatherForces(int n_nodes, const int *offset, const int *l
   for (int i = 0; i < 3; i++) f[3*a + i] = sum[i];
 }
 
-extern "C" int TLEDElementForces_CUDA(int law, double mu, double lambda, int n_lanes, const int corner[], const double G[], const double V0[], const double u[], double corner_force[])
+extern "C" int TLEDElementForces_CUDA(int law, double mu, double lambda, int n_lanes, const int corner[], const double G[],
+                                      const double V0[], const double u[], double corner_force[])
 {
   ElementForces<<<(n_lanes + THREADS - 1) / THREADS, THREADS>>>(law, mu, lambda, n_lanes, corner, G, V0, u, corner_force);
   return (int)cudaGetLastError();

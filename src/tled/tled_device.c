@@ -5,12 +5,12 @@
 
 struct _TLEDDevice {
   int    law, n_lanes, n_nodes;
-  double mu, lambda;    /* [Pa]                                                      */
-  Array  corner;        /* int, n_packs x 4 x TLED_LANES: node of each corner         */
-  Array  G, V0;         /* double, as in TLEDBlocks                                   */
-  Array  offset, list;  /* int: the corners 4 lane + a of each node, ascending        */
-  Array  corner_force;  /* double, n_lanes x 12 [N]                                   */
-  Array  u, f;          /* double, n_nodes x 3                                        */
+  double mu, lambda;   /* [Pa]                                                      */
+  Array  corner;       /* int, n_packs x 4 x TLED_LANES: node of each corner         */
+  Array  G, V0;        /* double, as in TLEDBlocks                                   */
+  Array  offset, list; /* int: the corners 4 lane + a of each node, ascending        */
+  Array  corner_force; /* double, n_lanes x 12 [N]                                   */
+  Array  u, f;         /* double, n_nodes x 3                                        */
 };
 
 static PetscErrorCode FillArray(Array *array, size_t element, size_t n, const void *from)
@@ -21,31 +21,32 @@ static PetscErrorCode FillArray(Array *array, size_t element, size_t n, const vo
   PetscCall(ArrayCreate(element, n, array));
   if (!from) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ArrayHostOverwrite(array, &to));
-  PetscCall(PetscMemcpy(to, from, element*n));
+  PetscCall(PetscMemcpy(to, from, element * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* nodes of the lanes' corners, and the corners of each node; padding belongs to node 0 of its block with forces that are zero, and is left
-   out of the lists */
+/* nodes of the lanes' corners, and the corners of each node; padding belongs to node 0 of its block with forces that are zero, and
+   is left out of the lists */
 static PetscErrorCode FillCorners(const TLEDBlocks *b, TLEDDevice d)
 {
   int *corner, *offset, *list;
 
   PetscFunctionBegin;
-  PetscCall(ArrayCreate(sizeof(int), 4*(size_t)d->n_lanes, &d->corner));
+  PetscCall(ArrayCreate(sizeof(int), 4 * (size_t)d->n_lanes, &d->corner));
   PetscCall(ArrayCreate(sizeof(int), (size_t)b->n_nodes + 1, &d->offset));
-  PetscCall(ArrayCreate(sizeof(int), 4*(size_t)d->n_lanes, &d->list));
+  PetscCall(ArrayCreate(sizeof(int), 4 * (size_t)d->n_lanes, &d->list));
   PetscCall(ArrayHostOverwrite(&d->corner, &corner));
   PetscCall(ArrayHostOverwrite(&d->offset, &offset));
   PetscCall(ArrayHostOverwrite(&d->list, &list));
   PetscCall(PetscArrayzero(offset, b->n_nodes + 1));
   for (int block = 0; block < b->n_blocks; block++)
-    for (int k = 4*TLED_LANES*b->pack_offset[block]; k < 4*TLED_LANES*b->pack_offset[block + 1]; k++) corner[k] = b->node[b->node_offset[block] + b->local[k]];
+    for (int k = 4 * TLED_LANES * b->pack_offset[block]; k < 4 * TLED_LANES * b->pack_offset[block + 1]; k++)
+      corner[k] = b->node[b->node_offset[block] + b->local[k]];
   for (int pass = 0; pass < 2; pass++) { /* count, then fill */
     for (int l = 0; l < d->n_lanes; l++) {
       for (int a = 0; a < 4 && b->element[l] >= 0; a++) {
-        const int node = corner[(4*(l / TLED_LANES) + a)*TLED_LANES + l % TLED_LANES];
-        if (pass) list[offset[node]++] = 4*l + a;
+        const int node = corner[(4 * (l / TLED_LANES) + a) * TLED_LANES + l % TLED_LANES];
+        if (pass) list[offset[node]++] = 4 * l + a;
         else offset[node + 1]++;
       }
     }
@@ -62,19 +63,20 @@ PetscErrorCode TLEDDeviceCreate(TLED tled, TLEDDevice *device)
   TLEDDevice        d;
 
   PetscFunctionBegin;
-  PetscCheck(tled->set_up && !tled->loops.anp, PETSC_COMM_SELF, PETSC_ERR_SUP, "the device has the forces of the element t4 of a body that is set up");
+  PetscCheck(tled->set_up && !tled->loops.anp, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "the device has the forces of the element t4 of a body that is set up");
   PetscCall(PetscNew(&d));
   d->law     = tled->loops.law;
   d->mu      = tled->loops.mu;
   d->lambda  = tled->loops.lambda;
-  d->n_lanes = TLED_LANES*b->n_packs;
+  d->n_lanes = TLED_LANES * b->n_packs;
   d->n_nodes = b->n_nodes;
   PetscCall(FillCorners(b, d));
-  PetscCall(FillArray(&d->G, sizeof(double), 9*(size_t)d->n_lanes, b->G));
+  PetscCall(FillArray(&d->G, sizeof(double), 9 * (size_t)d->n_lanes, b->G));
   PetscCall(FillArray(&d->V0, sizeof(double), (size_t)d->n_lanes, b->V0));
-  PetscCall(FillArray(&d->corner_force, sizeof(double), 12*(size_t)d->n_lanes, NULL));
-  PetscCall(FillArray(&d->u, sizeof(double), 3*(size_t)d->n_nodes, NULL));
-  PetscCall(FillArray(&d->f, sizeof(double), 3*(size_t)d->n_nodes, NULL));
+  PetscCall(FillArray(&d->corner_force, sizeof(double), 12 * (size_t)d->n_lanes, NULL));
+  PetscCall(FillArray(&d->u, sizeof(double), 3 * (size_t)d->n_nodes, NULL));
+  PetscCall(FillArray(&d->f, sizeof(double), 3 * (size_t)d->n_nodes, NULL));
   *device = d;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -89,7 +91,7 @@ PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[]
 
   PetscFunctionBegin;
   PetscCall(ArrayHostOverwrite(&d->u, &to));
-  PetscCall(PetscArraycpy(to, u, 3*d->n_nodes));
+  PetscCall(PetscArraycpy(to, u, 3 * d->n_nodes));
   PetscCall(ArrayDeviceRead(&d->corner, &corner));
   PetscCall(ArrayDeviceRead(&d->offset, &offset));
   PetscCall(ArrayDeviceRead(&d->list, &list));
@@ -103,7 +105,7 @@ PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[]
   status = TLEDGatherForces_CUDA(d->n_nodes, offset, list, corner_force, out);
   PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_GPU, "TLEDGatherForces_CUDA failed with CUDA status %d", status);
   PetscCall(ArrayHostRead(&d->f, &from));
-  PetscCall(PetscArraycpy(f, from, 3*d->n_nodes));
+  PetscCall(PetscArraycpy(f, from, 3 * d->n_nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 #else
   PetscFunctionBegin;

@@ -30,9 +30,15 @@ BY_HD void TLEDDisplacementGradient(const double d[9], const double G[9], double
 /* f_a = V0 P G_a [N], a = 1, 2, 3 (3 x 3, row a - 1) [Miller07, eq. 8]; node 0 takes minus their sum */
 BY_HD void TLEDNodalForces(const double P[9], const double G[9], double V0, double f[9])
 {
-  f[0] = V0*(P[0]*G[0] + P[1]*G[1] + P[2]*G[2]); f[1] = V0*(P[3]*G[0] + P[4]*G[1] + P[5]*G[2]); f[2] = V0*(P[6]*G[0] + P[7]*G[1] + P[8]*G[2]);
-  f[3] = V0*(P[0]*G[3] + P[1]*G[4] + P[2]*G[5]); f[4] = V0*(P[3]*G[3] + P[4]*G[4] + P[5]*G[5]); f[5] = V0*(P[6]*G[3] + P[7]*G[4] + P[8]*G[5]);
-  f[6] = V0*(P[0]*G[6] + P[1]*G[7] + P[2]*G[8]); f[7] = V0*(P[3]*G[6] + P[4]*G[7] + P[5]*G[8]); f[8] = V0*(P[6]*G[6] + P[7]*G[7] + P[8]*G[8]);
+  f[0] = V0*(P[0]*G[0] + P[1]*G[1] + P[2]*G[2]);
+  f[1] = V0*(P[3]*G[0] + P[4]*G[1] + P[5]*G[2]);
+  f[2] = V0*(P[6]*G[0] + P[7]*G[1] + P[8]*G[2]);
+  f[3] = V0*(P[0]*G[3] + P[1]*G[4] + P[2]*G[5]);
+  f[4] = V0*(P[3]*G[3] + P[4]*G[4] + P[5]*G[5]);
+  f[5] = V0*(P[6]*G[3] + P[7]*G[4] + P[8]*G[5]);
+  f[6] = V0*(P[0]*G[6] + P[1]*G[7] + P[2]*G[8]);
+  f[7] = V0*(P[3]*G[6] + P[4]*G[7] + P[5]*G[8]);
+  f[8] = V0*(P[6]*G[6] + P[7]*G[7] + P[8]*G[8]);
 }
 
 /* cube root of x > 0 by Halley's iteration y <- y (y^3 + 2x)/(2y^3 + x) from y = 1: to round-off for 1e-2 < x < 1e2 (and to 1e-9 for a
@@ -87,7 +93,8 @@ BY_HD void TLEDAverageStress(const double H[9], double r, double inv_J, double J
 /* Stiffness blocks of the neo-Hookean tetrahedron, K_ab = df_a/du_b [N/m], closed form with the current gradients g = F^-T G:
      K_ab = V0 [ mu (G_a . G_b) I + (mu - lambda ln J) g_b g_a^T + lambda' g_a g_b^T ]
    with lambda' = lambda. (A smaller lambda' takes volumetric stiffness out, see TLEDTangent().) K is 12 x 12, row-major, rows 3 a + i. */
-BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime, double K[144])
+BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime,
+                                   double K[144])
 {
   const double jm1 = TLEDJacobianMinusOne(H), inv_J = 1.0 / (1.0 + jm1), c = mu - lambda*TLEDLogJacobian(jm1);
   double       F[9], B[9], G4[12], g[12];
@@ -113,7 +120,8 @@ BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double 
 
 /* Stiffness blocks of the St Venant-Kirchhoff tetrahedron with y = F G:
      K_ab = V0 [ (G_a . S G_b) I + lambda' y_a y_b^T + mu (y_b y_a^T + (G_a . G_b) F F^T) ],  lambda' = lambda as above */
-BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime, double K[144])
+BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], double V0, double mu, double lambda,
+                                          double lambda_prime, double K[144])
 {
   double F[9], B[9], S[6], G4[12], y[12];
 
@@ -129,7 +137,8 @@ BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], 
     for (int b = 0; b < 4; b++) {
       const double *A = &G4[3*a], *C = &G4[3*b];
       const double  GG = Dot3(A, C);
-      const double  GSG = A[0]*(S[0]*C[0] + S[3]*C[1] + S[5]*C[2]) + A[1]*(S[3]*C[0] + S[1]*C[1] + S[4]*C[2]) + A[2]*(S[5]*C[0] + S[4]*C[1] + S[2]*C[2]);
+      const double  GSG = A[0]*(S[0]*C[0] + S[3]*C[1] + S[5]*C[2]) + A[1]*(S[3]*C[0] + S[1]*C[1] + S[4]*C[2])
+                         + A[2]*(S[5]*C[0] + S[4]*C[1] + S[2]*C[2]);
       for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
           K[12*(3*a + i) + 3*b + k] = V0*(lambda_prime*y[3*a + i]*y[3*b + k] + mu*(y[3*b + i]*y[3*a + k] + GG*B[3*i + k]) + (i == k ? GSG : 0.0));
@@ -139,7 +148,8 @@ BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], 
 }
 
 /* stiffness of the law `law` */
-BY_HD void TLEDStiffness(int law, const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime, double K[144])
+BY_HD void TLEDStiffness(int law, const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime,
+                         double K[144])
 {
   if (law == TLED_LAW_NEO_HOOKEAN) TLEDStiffnessNeoHookean(H, G, V0, mu, lambda, lambda_prime, K);
   else TLEDStiffnessStVenantKirchhoff(H, G, V0, mu, lambda, lambda_prime, K);

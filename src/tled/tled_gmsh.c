@@ -7,7 +7,7 @@
 typedef struct {
   FILE       *stream;
   const char *key, *path;
-  int         version;  /* 22, 40, 41 */
+  int         version; /* 22, 40, 41 */
   PetscBool   binary;
 } Reader;
 
@@ -20,22 +20,34 @@ static PetscErrorCode Broken(const Reader *r, const char what[])
 static const char *OtherElement(int type)
 {
   switch (type) {
-  case 1: case 2: case 4: case 15: return NULL; /* line, triangle, tetrahedron, point */
-  case 3: return "4-node quadrangle";
-  case 5: return "8-node hexahedron";
-  case 6: return "6-node prism";
-  case 7: return "5-node pyramid";
-  case 8: return "second-order line";
-  case 9: return "second-order triangle";
-  case 11: return "second-order (10-node) tetrahedron";
-  default: return "element of another kind";
+  case 1:
+  case 2:
+  case 4:
+  case 15:
+    return NULL; /* line, triangle, tetrahedron, point */
+  case 3:
+    return "4-node quadrangle";
+  case 5:
+    return "8-node hexahedron";
+  case 6:
+    return "6-node prism";
+  case 7:
+    return "5-node pyramid";
+  case 8:
+    return "second-order line";
+  case 9:
+    return "second-order triangle";
+  case 11:
+    return "second-order (10-node) tetrahedron";
+  default:
+    return "element of another kind";
   }
 }
 
 static void SkipLine(FILE *stream)
 {
   int c;
-  while ((c = fgetc(stream)) != EOF && c != '\n') { }
+  while ((c = fgetc(stream)) != EOF && c != '\n') {}
 }
 
 /* the next section's name, "$Nodes" say; returns 0 at the end of the file */
@@ -60,7 +72,8 @@ static PetscErrorCode ReadNames(Reader *r, TLEDGmshFile *file)
   for (int i = 0; i < n; i++) {
     int  dim, tag;
     char name[128];
-    if (fscanf(r->stream, "%d %d \"%127[^\"]\"", &dim, &tag, name) != 3) PetscFunctionReturn(Broken(r, "its $PhysicalNames section cannot be read"));
+    if (fscanf(r->stream, "%d %d \"%127[^\"]\"", &dim, &tag, name) != 3)
+      PetscFunctionReturn(Broken(r, "its $PhysicalNames section cannot be read"));
     if (file->n_groups == BY_NAMES_MAX) continue;
     file->dim[file->n_groups] = dim;
     PetscCall(PetscStrncpy(file->name[file->n_groups++], name, BY_NAME_MAX));
@@ -101,7 +114,8 @@ static PetscErrorCode ReadElements(Reader *r, TLEDGmshFile *file)
       SkipLine(r->stream);
     }
   }
-  if (fscanf(r->stream, "%63s", end) != 1 || strcmp(end, "$EndElements")) PetscFunctionReturn(Broken(r, "it ends before $EndElements"));
+  if (fscanf(r->stream, "%63s", end) != 1 || strcmp(end, "$EndElements"))
+    PetscFunctionReturn(Broken(r, "it ends before $EndElements"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,13 +128,15 @@ static PetscErrorCode ReadSections(Reader *r, TLEDGmshFile *file)
 
   PetscFunctionBegin;
   if (!fgets(line, sizeof line, r->stream) || strncmp(line, "$MeshFormat", 11))
-    PetscFunctionReturn(InputError(r->key, "is not a gmsh mesh: it does not begin with $MeshFormat\n  expected a .msh file of gmsh, format 4.1 or 2.2"));
+    PetscFunctionReturn(InputError(
+        r->key, "is not a gmsh mesh: it does not begin with $MeshFormat\n  expected a .msh file of gmsh, format 4.1 or 2.2"));
   if (!fgets(line, sizeof line, r->stream) || sscanf(line, "%lf %d %d", &version, &kind, &bytes) != 3)
     PetscFunctionReturn(Broken(r, "its format line cannot be read"));
-  r->version = (int)(10.0*version + 0.5);
+  r->version = (int)(10.0 * version + 0.5);
   r->binary  = kind ? PETSC_TRUE : PETSC_FALSE;
   if (r->version != 22 && r->version != 40 && r->version != 41)
-    PetscFunctionReturn(InputError(r->key, "is in gmsh format %g, which is not read\n  expected format 4.1 or 2.2 (gmsh -format msh41)", version));
+    PetscFunctionReturn(
+        InputError(r->key, "is in gmsh format %g, which is not read\n  expected format 4.1 or 2.2 (gmsh -format msh41)", version));
   while (NextSection(r->stream, section)) {
     if (!strcmp(section, "$PhysicalNames")) ByCall(ReadNames(r, file));
     if (!strcmp(section, "$Nodes")) nodes = PETSC_TRUE;

@@ -127,7 +127,8 @@ PetscErrorCode TLEDGmshDestroy_Private(TLEDGmshFile *file);
 PetscErrorCode TLEDMeshRead_Private(const char key[], const TLEDParams *params, TLEDMesh *mesh);
 PetscErrorCode TLEDMeshDestroy_Private(TLEDMesh *mesh);
 PetscErrorCode TLEDMeshFindGroup_Private(const TLEDMesh *mesh, const char name[], const TLEDGroup **group);
-PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[], const char key[], const char name[], PetscInt dim, const TLEDGroup **group);
+PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[], const char key[], const char name[], PetscInt dim,
+                                         const TLEDGroup **group);
 /* tled_blocks.c */
 PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *blocks);
 PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);

@@ -4,25 +4,27 @@
 static const char *const materials[] = {"neo_hookean", "st_venant_kirchhoff", NULL}; /* in the order of TLEDMaterial */
 static const char *const elements[]  = {"auto", "t4", "anp", NULL};                  /* in the order of TLEDElement  */
 
-#define ROW(key, type, unit, def, lo, hi, flags, choices, help) {#key, type, offsetof(TLEDParams, key), unit, def, lo, hi, flags, choices, help}
+#define ROW(key, type, unit, def, lo, hi, flags, choices, help)                                                                    \
+  {                                                                                                                                \
+#key, type, offsetof(TLEDParams, key), unit, def, lo, hi, flags, choices, help                                                 \
+  }
 
 const Key TLEDKeys[] = {
-  ROW(mesh, KEY_FILE, "", NULL, 0, 0, KEY_REQUIRED, NULL, "gmsh mesh of tetrahedra with named physical groups"),
-  ROW(density, KEY_REAL, "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "mass per reference volume"),
-  ROW(material, KEY_CHOICE, "", "neo_hookean", 0, 0, 0, materials, "elastic law"),
-  ROW(young, KEY_REAL, "Pa", NULL, 0, 1e15, KEY_LO_OPEN | KEY_REQUIRED, NULL, "Young's modulus at small strain"),
-  ROW(poisson, KEY_REAL, "1", "0.3", -1, 0.5, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "Poisson's ratio at small strain"),
-  ROW(element, KEY_CHOICE, "", "auto", 0, 0, 0, elements,
-      "t4: constant strain; anp: average nodal pressure, does not lock; auto: anp above poisson 0.4"),
-  ROW(fixed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes are held"),
-  ROW(prescribed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes move with prescribed_velocity"),
-  ROW(prescribed_velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "velocity of the groups in prescribed"),
-  ROW(wetted, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "surface groups that touch the fluid; none named: the whole boundary"),
-  ROW(damping, KEY_REAL, "1/s", "0", 0, 1e9, 0, NULL, "mass-proportional damping"),
-  ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; shortens the stable step"),
-  ROW(safety, KEY_REAL, "1", "0.9", 0, 1, KEY_LO_OPEN, NULL, "time step over the critical time step"),
-  ROW(scale, KEY_REAL, "1", "1", 0, 1e9, KEY_LO_OPEN, NULL, "factor on the mesh's coordinates"),
-  ROW(translate, KEY_VEC3, "m", "0,0,0", -1e9, 1e9, 0, NULL, "shift of the mesh after scaling"),
-  ROW(velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "initial velocity"),
-  KEY_END
-};
+    ROW(mesh, KEY_FILE, "", NULL, 0, 0, KEY_REQUIRED, NULL, "gmsh mesh of tetrahedra with named physical groups"),
+    ROW(density, KEY_REAL, "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "mass per reference volume"),
+    ROW(material, KEY_CHOICE, "", "neo_hookean", 0, 0, 0, materials, "elastic law"),
+    ROW(young, KEY_REAL, "Pa", NULL, 0, 1e15, KEY_LO_OPEN | KEY_REQUIRED, NULL, "Young's modulus at small strain"),
+    ROW(poisson, KEY_REAL, "1", "0.3", -1, 0.5, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "Poisson's ratio at small strain"),
+    ROW(element, KEY_CHOICE, "", "auto", 0, 0, 0, elements,
+        "t4: constant strain; anp: average nodal pressure, does not lock; auto: anp above poisson 0.4"),
+    ROW(fixed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes are held"),
+    ROW(prescribed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes move with prescribed_velocity"),
+    ROW(prescribed_velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "velocity of the groups in prescribed"),
+    ROW(wetted, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "surface groups that touch the fluid; none named: the whole boundary"),
+    ROW(damping, KEY_REAL, "1/s", "0", 0, 1e9, 0, NULL, "mass-proportional damping"),
+    ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; shortens the stable step"),
+    ROW(safety, KEY_REAL, "1", "0.9", 0, 1, KEY_LO_OPEN, NULL, "time step over the critical time step"),
+    ROW(scale, KEY_REAL, "1", "1", 0, 1e9, KEY_LO_OPEN, NULL, "factor on the mesh's coordinates"),
+    ROW(translate, KEY_VEC3, "m", "0,0,0", -1e9, 1e9, 0, NULL, "shift of the mesh after scaling"),
+    ROW(velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "initial velocity"),
+    KEY_END};

@@ -27,8 +27,18 @@ BY_HD double TLEDJacobianMinusOne(const double H[9])
 BY_HD double TLEDLogSeries(double x)
 {
   const double s = x / (2.0 + x), q = s*s;
-  const double even = 1.0/3 + q*(1.0/5 + q*(1.0/7 + q*(1.0/9 + q*(1.0/11 + q*(1.0/13 + q*(1.0/15 + q*(1.0/17 + q*(1.0/19 + q*(1.0/21 + q*(1.0/23))))))))));
+  double       even = 1.0/23;
 
+  even = 1.0/21 + q*even;
+  even = 1.0/19 + q*even;
+  even = 1.0/17 + q*even;
+  even = 1.0/15 + q*even;
+  even = 1.0/13 + q*even;
+  even = 1.0/11 + q*even;
+  even = 1.0/9 + q*even;
+  even = 1.0/7 + q*even;
+  even = 1.0/5 + q*even;
+  even = 1.0/3 + q*even;
   return 2.0*s + 2.0*s*q*even;
 }
 

@@ -18,7 +18,11 @@ static PetscErrorCode ReadPlex(const char key[], const char path[], DM *dm)
   ierr = DMPlexCreateGmshFromFile(PETSC_COMM_SELF, path, PETSC_TRUE, dm);
   PetscCall(PetscPopErrorHandler());
   if (!given) PetscCall(PetscOptionsClearValue(NULL, option));
-  if (ierr) PetscFunctionReturn(InputError(key, "is a gmsh file that cannot be read (PETSc's reader: error %d)\n  write it again with gmsh (formats 4.1 and 2.2 are read)", (int)ierr));
+  if (ierr)
+    PetscFunctionReturn(InputError(
+        key,
+        "is a gmsh file that cannot be read (PETSc's reader: error %d)\n  write it again with gmsh (formats 4.1 and 2.2 are read)",
+        (int)ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -29,15 +33,29 @@ static PetscErrorCode CheckKind(const char key[], const TLEDGmshFile *file, DM d
   DMPolytopeType type;
 
   PetscFunctionBegin;
-  if (file->n_other) PetscFunctionReturn(InputError(key, "holds a %s (and %" PetscInt_FMT " more elements that are not used)\n  expected a mesh of first-order (4-node) tetrahedra only", file->other, file->n_other - 1));
-  if (file->n_tets == 0) PetscFunctionReturn(InputError(key, "is a mesh of the wrong kind: no tetrahedra, %" PetscInt_FMT " triangles\n  expected a volume mesh (gmsh -3) with a physical volume; meshes/solid_from_surface.py makes one from a closed surface", file->n_triangles));
+  if (file->n_other)
+    PetscFunctionReturn(InputError(key,
+                                   "holds a %s (and %" PetscInt_FMT
+                                   " more elements that are not used)\n  expected a mesh of first-order (4-node) tetrahedra only",
+                                   file->other, file->n_other - 1));
+  if (file->n_tets == 0)
+    PetscFunctionReturn(InputError(key,
+                                   "is a mesh of the wrong kind: no tetrahedra, %" PetscInt_FMT
+                                   " triangles\n  expected a volume mesh (gmsh -3) with a physical volume; "
+                                   "meshes/solid_from_surface.py makes one from a closed surface",
+                                   file->n_triangles));
   if (!dm) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetDimension(dm, &dim));
-  if (dim != 3) PetscFunctionReturn(InputError(key, "is a mesh of the wrong kind: its elements have %" PetscInt_FMT " dimensions\n  expected tetrahedra (gmsh -3)", dim));
+  if (dim != 3)
+    PetscFunctionReturn(InputError(
+        key, "is a mesh of the wrong kind: its elements have %" PetscInt_FMT " dimensions\n  expected tetrahedra (gmsh -3)", dim));
   PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
   for (c = c_start; c < c_end; c++) {
     PetscCall(DMPlexGetCellType(dm, c, &type));
-    if (type != DM_POLYTOPE_TETRAHEDRON) PetscFunctionReturn(InputError(key, "is a mesh of the wrong kind: element %" PetscInt_FMT " is a %s\n  expected tetrahedra only", c - c_start + 1, DMPolytopeTypes[type]));
+    if (type != DM_POLYTOPE_TETRAHEDRON)
+      PetscFunctionReturn(InputError(key,
+                                     "is a mesh of the wrong kind: element %" PetscInt_FMT " is a %s\n  expected tetrahedra only",
+                                     c - c_start + 1, DMPolytopeTypes[type]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -56,16 +74,16 @@ static PetscErrorCode GetCells(DM dm, const TLEDParams *p, TLEDMesh *mesh)
   PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
   mesh->n_tets  = c_end - c_start;
   mesh->n_nodes = v_end - v_start;
-  PetscCall(PetscMalloc3(3*mesh->n_nodes, &mesh->X, 4*mesh->n_tets, &mesh->tets, mesh->n_tets, &mesh->tag));
+  PetscCall(PetscMalloc3(3 * mesh->n_nodes, &mesh->X, 4 * mesh->n_tets, &mesh->tets, mesh->n_tets, &mesh->tag));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(VecGetArrayRead(coordinates, &xyz));
-  for (k = 0; k < 3*mesh->n_nodes; k++) mesh->X[k] = p->scale*PetscRealPart(xyz[k]) + p->translate[k % 3];
+  for (k = 0; k < 3 * mesh->n_nodes; k++) mesh->X[k] = p->scale * PetscRealPart(xyz[k]) + p->translate[k % 3];
   PetscCall(VecRestoreArrayRead(coordinates, &xyz));
   for (c = c_start; c < c_end; c++) {
-    PetscInt *corner = &mesh->tets[4*(c - c_start)];
+    PetscInt *corner = &mesh->tets[4 * (c - c_start)];
     PetscCall(DMPlexGetTransitiveClosure(dm, c, PETSC_TRUE, &n, &closure));
     for (k = 0, a = 0; k < n && a < 4; k++)
-      if (closure[2*k] >= v_start && closure[2*k] < v_end) corner[a++] = closure[2*k] - v_start;
+      if (closure[2 * k] >= v_start && closure[2 * k] < v_end) corner[a++] = closure[2 * k] - v_start;
     PetscCall(DMPlexRestoreTransitiveClosure(dm, c, PETSC_TRUE, &n, &closure));
     PetscCall(DMPlexInvertCell(DM_POLYTOPE_TETRAHEDRON, corner));
   }
@@ -82,22 +100,25 @@ static PetscErrorCode CheckVolumes(const char key[], const TLEDMesh *mesh)
   for (e = 0; e < mesh->n_tets; e++) {
     PetscReal x[12], G[9];
     for (a = 0; a < 4; a++)
-      for (k = 0; k < 3; k++) x[3*a + k] = mesh->X[3*mesh->tets[4*e + a] + k];
+      for (k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[4 * e + a] + k];
     V = TLEDReferenceGradients(x, G);
     for (a = 1, longest = 0.0; a < 4; a++) {
-      l2 = PetscSqr(x[3*a] - x[0]) + PetscSqr(x[3*a + 1] - x[1]) + PetscSqr(x[3*a + 2] - x[2]);
+      l2 = PetscSqr(x[3 * a] - x[0]) + PetscSqr(x[3 * a + 1] - x[1]) + PetscSqr(x[3 * a + 2] - x[2]);
       if (l2 > longest) longest = l2;
     }
-    if (V > 1e-12*longest*PetscSqrtReal(longest)) continue; /* a flat element of any size: round-off of its coordinates */
+    if (V > 1e-12 * longest * PetscSqrtReal(longest)) continue; /* a flat element of any size: round-off of its coordinates */
     if (!n_bad++) first = e, V_first = V;
   }
   if (!n_bad) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscFunctionReturn(InputError(key, "has %s element: number %" PetscInt_FMT " of the file has volume %g m^3 (%" PetscInt_FMT " of %" PetscInt_FMT " elements are bad)\n  every tetrahedron needs a positive volume; mesh again with optimisation (gmsh -3 -optimize)",
-                                 V_first < 0.0 ? "an inverted" : "a flat", mesh->tag[first], (double)V_first, n_bad, mesh->n_tets));
+  PetscFunctionReturn(InputError(
+      key,
+      "has %s element: number %" PetscInt_FMT " of the file has volume %g m^3 (%" PetscInt_FMT " of %" PetscInt_FMT
+      " elements are bad)\n  every tetrahedron needs a positive volume; mesh again with optimisation (gmsh -3 -optimize)",
+      V_first < 0.0 ? "an inverted" : "a flat", mesh->tag[first], (double)V_first, n_bad, mesh->n_tets));
 }
 
-/* triangles with one tetrahedron, turned so that the normal points away from its fourth corner; face_triangle[f] is the number of the
-   triangle made of face f, or -1 */
+/* triangles with one tetrahedron, turned so that the normal points away from its fourth corner; face_triangle[f] is the number of
+   the triangle made of face f, or -1 */
 static PetscErrorCode GetBoundary(DM dm, TLEDMesh *mesh, PetscInt face_triangle[])
 {
   PetscInt        f, f_start, f_end, v_start, v_end, c_start, n, k, a;
@@ -112,7 +133,7 @@ static PetscErrorCode GetBoundary(DM dm, TLEDMesh *mesh, PetscInt face_triangle[
     PetscCall(DMPlexGetSupportSize(dm, f, &n));
     face_triangle[f - f_start] = n == 1 ? mesh->n_triangles++ : -1;
   }
-  PetscCall(PetscMalloc1(3*mesh->n_triangles, &mesh->triangles));
+  PetscCall(PetscMalloc1(3 * mesh->n_triangles, &mesh->triangles));
   for (f = f_start; f < f_end; f++) {
     PetscInt        corner[3], opposite = -1;
     const PetscInt *tet;
@@ -120,18 +141,18 @@ static PetscErrorCode GetBoundary(DM dm, TLEDMesh *mesh, PetscInt face_triangle[
     if (face_triangle[f - f_start] < 0) continue;
     PetscCall(DMPlexGetTransitiveClosure(dm, f, PETSC_TRUE, &n, &closure));
     for (k = 0, a = 0; k < n && a < 3; k++)
-      if (closure[2*k] >= v_start && closure[2*k] < v_end) corner[a++] = closure[2*k] - v_start;
+      if (closure[2 * k] >= v_start && closure[2 * k] < v_end) corner[a++] = closure[2 * k] - v_start;
     PetscCall(DMPlexRestoreTransitiveClosure(dm, f, PETSC_TRUE, &n, &closure));
     PetscCall(DMPlexGetSupport(dm, f, &support));
-    tet = &mesh->tets[4*(support[0] - c_start)];
+    tet = &mesh->tets[4 * (support[0] - c_start)];
     for (a = 0; a < 4; a++)
       if (tet[a] != corner[0] && tet[a] != corner[1] && tet[a] != corner[2]) opposite = tet[a];
-    Sub3(&mesh->X[3*corner[1]], &mesh->X[3*corner[0]], e1);
-    Sub3(&mesh->X[3*corner[2]], &mesh->X[3*corner[0]], e2);
-    Sub3(&mesh->X[3*opposite], &mesh->X[3*corner[0]], e3);
+    Sub3(&mesh->X[3 * corner[1]], &mesh->X[3 * corner[0]], e1);
+    Sub3(&mesh->X[3 * corner[2]], &mesh->X[3 * corner[0]], e2);
+    Sub3(&mesh->X[3 * opposite], &mesh->X[3 * corner[0]], e3);
     Cross3(e1, e2, normal);
     if (Dot3(normal, e3) > 0.0) k = corner[1], corner[1] = corner[2], corner[2] = k;
-    for (a = 0; a < 3; a++) mesh->triangles[3*face_triangle[f - f_start] + a] = corner[a];
+    for (a = 0; a < 3; a++) mesh->triangles[3 * face_triangle[f - f_start] + a] = corner[a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,10 +180,11 @@ static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLED
       PetscCall(ISGetLocalSize(points, &n_points));
       PetscCall(ISGetIndices(points, &point));
       for (j = 0; j < n_points; j++) {
-        if (point[j] >= f_start && point[j] < f_end && face_triangle[point[j] - f_start] >= 0) is_triangle[face_triangle[point[j] - f_start]] = PETSC_TRUE;
+        if (point[j] >= f_start && point[j] < f_end && face_triangle[point[j] - f_start] >= 0)
+          is_triangle[face_triangle[point[j] - f_start]] = PETSC_TRUE;
         PetscCall(DMPlexGetTransitiveClosure(dm, point[j], PETSC_TRUE, &n_closure, &closure));
         for (k = 0; k < n_closure; k++)
-          if (closure[2*k] >= v_start && closure[2*k] < v_end) in_group[closure[2*k] - v_start] = PETSC_TRUE;
+          if (closure[2 * k] >= v_start && closure[2 * k] < v_end) in_group[closure[2 * k] - v_start] = PETSC_TRUE;
         PetscCall(DMPlexRestoreTransitiveClosure(dm, point[j], PETSC_TRUE, &n_closure, &closure));
       }
       PetscCall(ISRestoreIndices(points, &point));
@@ -269,11 +291,11 @@ static PetscInt EditDistance(const char a[], const char b[])
   for (size_t j = 0; j <= m; j++) row[j] = (PetscInt)j;
   for (size_t i = 1; i <= n; i++) {
     PetscInt diagonal = row[0];
-    row[0] = (PetscInt)i;
+    row[0]            = (PetscInt)i;
     for (size_t j = 1; j <= m; j++) {
       const PetscInt change = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j]   = PetscMin(change, 1 + PetscMin(row[j], row[j - 1]));
+      diagonal              = row[j];
+      row[j]                = PetscMin(change, 1 + PetscMin(row[j], row[j - 1]));
     }
   }
   return row[m];
@@ -284,12 +306,13 @@ static PetscInt EditDistance(const char a[], const char b[])
 
   Errors: BY_ERR_INPUT, reported with the groups that the mesh has and the nearest name
 */
-PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[], const char key[], const char name[], PetscInt dim, const TLEDGroup **group)
+PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[], const char key[], const char name[], PetscInt dim,
+                                         const TLEDGroup **group)
 {
   char        list[1024] = "", near[BY_NAME_MAX + 32] = "";
   const char *slash = strrchr(path, '/');
-  size_t      used = 0;
-  PetscInt    best = 3, g, d;
+  size_t      used  = 0;
+  PetscInt    best  = 3, g, d;
 
   PetscFunctionBegin;
   PetscCall(TLEDMeshFindGroup_Private(mesh, name, group));
@@ -297,7 +320,11 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
   for (g = 0; g < mesh->n_groups; g++) {
     const TLEDGroup *have = &mesh->groups[g];
     if (used < sizeof list - BY_NAME_MAX - 32)
-      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s (%s)", g ? ", " : "", have->name, have->dim == 3 ? "volume" : have->dim == 2 ? "surface" : have->dim == 1 ? "curve" : "point");
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s (%s)", g ? ", " : "", have->name,
+                               have->dim == 3   ? "volume"
+                               : have->dim == 2 ? "surface"
+                               : have->dim == 1 ? "curve"
+                                                : "point");
     d = EditDistance(have->name, name);
     if (d < best && d > 0 && (!dim || have->dim == dim)) {
       best = d;
@@ -305,7 +332,12 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
     }
   }
   if (*group && dim && (*group)->dim != dim)
-    PetscFunctionReturn(InputError(key, "names the group %s of %s, which is not a surface\n  groups in the mesh: %s", name, slash ? slash + 1 : path, list));
-  if (*group) PetscFunctionReturn(InputError(key, "names the group %s of %s, which holds no surface or volume of the mesh\n  groups in the mesh: %s", name, slash ? slash + 1 : path, list));
-  PetscFunctionReturn(InputError(key, "names the group %s, which %s does not have\n  %sgroups in the mesh: %s", name, slash ? slash + 1 : path, near, mesh->n_groups ? list : "none; name physical groups in gmsh"));
+    PetscFunctionReturn(InputError(key, "names the group %s of %s, which is not a surface\n  groups in the mesh: %s", name,
+                                   slash ? slash + 1 : path, list));
+  if (*group)
+    PetscFunctionReturn(
+        InputError(key, "names the group %s of %s, which holds no surface or volume of the mesh\n  groups in the mesh: %s", name,
+                   slash ? slash + 1 : path, list));
+  PetscFunctionReturn(InputError(key, "names the group %s, which %s does not have\n  %sgroups in the mesh: %s", name,
+                                 slash ? slash + 1 : path, near, mesh->n_groups ? list : "none; name physical groups in gmsh"));
 }

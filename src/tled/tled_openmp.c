@@ -1,6 +1,6 @@
 /* tled_openmp.c - the element loops on the CPU: blocks over threads, packs of elements over vector lanes. No formula here.
 
-   Every function may be called by all threads of a parallel region (the work is shared, with a barrier at the end) or outside one. */
+   Every function may be called by all threads of a parallel region (the work is shared, with a barrier at the end) or outside. */
 #include "tled/tled_impl.h"
 #include "tled/tled_element.h"
 #include <omp.h>
@@ -10,8 +10,8 @@
 /* inlined without question: a vector loop has no calls, and constants handed in (the law) fold away */
 #define INLINE static inline __attribute__((always_inline))
 
-/* x, y, z of a node and a fourth number, as one vector register: corners are loaded and forces added a node at a time, and turned into
-   lanes by transposition, which is cheaper than gathers of single numbers */
+/* x, y, z of a node and a fourth number, as one vector register: corners are loaded and forces added a node at a time, and turned
+   into lanes by transposition, which is cheaper than gathers of single numbers */
 typedef double Row __attribute__((vector_size(32)));
 
 /* what a block works on: its nodes' values and forces */
@@ -30,7 +30,7 @@ static void LoadNodes(const TLEDBlocks *b, int block, const double u[], Scratch 
 {
   const int *node = b->node + b->node_offset[block], n = b->node_offset[block + 1] - b->node_offset[block];
 
-  for (int a = 0; a < n; a++) s->u[a] = (Row){u[3*node[a]], u[3*node[a] + 1], u[3*node[a] + 2], 0.0};
+  for (int a = 0; a < n; a++) s->u[a] = (Row){u[3 * node[a]], u[3 * node[a] + 1], u[3 * node[a] + 2], 0.0};
 }
 
 /* how many lanes are broken: det F <= 0 or NaN */
@@ -46,8 +46,8 @@ INLINE int CountBroken(const double jm1[])
 INLINE void RowsToLanes(Row r0, Row r1, Row r2, Row r3, double x[], double y[], double z[])
 {
   typedef long long Pick __attribute__((vector_size(32)));
-  const Row xz01 = __builtin_shuffle(r0, r1, (Pick){0, 4, 2, 6}), y01 = __builtin_shuffle(r0, r1, (Pick){1, 5, 3, 7});
-  const Row xz23 = __builtin_shuffle(r2, r3, (Pick){0, 4, 2, 6}), y23 = __builtin_shuffle(r2, r3, (Pick){1, 5, 3, 7});
+  const Row         xz01 = __builtin_shuffle(r0, r1, (Pick){0, 4, 2, 6}), y01 = __builtin_shuffle(r0, r1, (Pick){1, 5, 3, 7});
+  const Row         xz23 = __builtin_shuffle(r2, r3, (Pick){0, 4, 2, 6}), y23 = __builtin_shuffle(r2, r3, (Pick){1, 5, 3, 7});
 
   *(Row *)x = __builtin_shuffle(xz01, xz23, (Pick){0, 1, 4, 5});
   *(Row *)y = __builtin_shuffle(y01, y23, (Pick){0, 1, 4, 5});
@@ -58,9 +58,9 @@ INLINE void RowsToLanes(Row r0, Row r1, Row r2, Row r3, double x[], double y[], 
 INLINE void AddLanesToRows(const double x[], const double y[], const double z[], Row *r0, Row *r1, Row *r2, Row *r3)
 {
   typedef long long Pick __attribute__((vector_size(32)));
-  const Row X = *(const Row *)x, Y = *(const Row *)y, Z = *(const Row *)z, O = {0.0, 0.0, 0.0, 0.0};
-  const Row xy02 = __builtin_shuffle(X, Y, (Pick){0, 4, 2, 6}), xy13 = __builtin_shuffle(X, Y, (Pick){1, 5, 3, 7});
-  const Row z02 = __builtin_shuffle(Z, O, (Pick){0, 4, 2, 6}), z13 = __builtin_shuffle(Z, O, (Pick){1, 5, 3, 7});
+  const Row         X = *(const Row *)x, Y = *(const Row *)y, Z = *(const Row *)z, O = {0.0, 0.0, 0.0, 0.0};
+  const Row         xy02 = __builtin_shuffle(X, Y, (Pick){0, 4, 2, 6}), xy13 = __builtin_shuffle(X, Y, (Pick){1, 5, 3, 7});
+  const Row         z02 = __builtin_shuffle(Z, O, (Pick){0, 4, 2, 6}), z13 = __builtin_shuffle(Z, O, (Pick){1, 5, 3, 7});
 
   *r0 += __builtin_shuffle(xy02, z02, (Pick){0, 1, 4, 5});
   *r1 += __builtin_shuffle(xy13, z13, (Pick){0, 1, 4, 5});
@@ -74,8 +74,9 @@ INLINE void PackDifferences(const int local[], const Scratch *s, double d[9][L])
   for (int l = 0; l < L; l += 4) {
     const Row o[4] = {s->u[local[l]], s->u[local[l + 1]], s->u[local[l + 2]], s->u[local[l + 3]]};
     for (int a = 1; a < 4; a++) {
-      const int *n = local + a*L + l;
-      RowsToLanes(s->u[n[0]] - o[0], s->u[n[1]] - o[1], s->u[n[2]] - o[2], s->u[n[3]] - o[3], &d[3*a - 3][l], &d[3*a - 2][l], &d[3*a - 1][l]);
+      const int *n = local + a * L + l;
+      RowsToLanes(s->u[n[0]] - o[0], s->u[n[1]] - o[1], s->u[n[2]] - o[2], s->u[n[3]] - o[3], &d[3 * a - 3][l], &d[3 * a - 2][l],
+                  &d[3 * a - 1][l]);
     }
   }
 }
@@ -89,13 +90,20 @@ INLINE int PackGradients(const int local[], const double G[], const Scratch *s, 
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
     const double d[9] = {e[0][l], e[1][l], e[2][l], e[3][l], e[4][l], e[5][l], e[6][l], e[7][l], e[8][l]};
-    const double g[9] = {G[l], G[L + l], G[2*L + l], G[3*L + l], G[4*L + l], G[5*L + l], G[6*L + l], G[7*L + l], G[8*L + l]};
+    const double g[9] = {G[l],         G[L + l],     G[2 * L + l], G[3 * L + l], G[4 * L + l],
+                         G[5 * L + l], G[6 * L + l], G[7 * L + l], G[8 * L + l]};
     double       H[9];
     TLEDDisplacementGradient(d, g, H);
-    p->jm1[l] = TLEDJacobianMinusOne(H);
-    p->H[0][l] = H[0]; p->H[1][l] = H[1]; p->H[2][l] = H[2];
-    p->H[3][l] = H[3]; p->H[4][l] = H[4]; p->H[5][l] = H[5];
-    p->H[6][l] = H[6]; p->H[7][l] = H[7]; p->H[8][l] = H[8];
+    p->jm1[l]  = TLEDJacobianMinusOne(H);
+    p->H[0][l] = H[0];
+    p->H[1][l] = H[1];
+    p->H[2][l] = H[2];
+    p->H[3][l] = H[3];
+    p->H[4][l] = H[4];
+    p->H[5][l] = H[5];
+    p->H[6][l] = H[6];
+    p->H[7][l] = H[7];
+    p->H[8][l] = H[8];
   }
   return CountBroken(p->jm1);
 }
@@ -117,21 +125,36 @@ static void PackLogarithms(const double jm1[], double ln_J[])
 /* nodal forces of each lane, f[3 a + i] of the nodes a = 1, 2, 3 in rows 3 to 11, of node 0 in rows 0 to 2 */
 INLINE void StoreForces(const double P[9], const double G[], const double V0[], int l, double f[12][L])
 {
-  const double g[9] = {G[l], G[L + l], G[2*L + l], G[3*L + l], G[4*L + l], G[5*L + l], G[6*L + l], G[7*L + l], G[8*L + l]};
+  const double g[9] = {G[l],         G[L + l],     G[2 * L + l], G[3 * L + l], G[4 * L + l],
+                       G[5 * L + l], G[6 * L + l], G[7 * L + l], G[8 * L + l]};
   double       n[9];
 
   TLEDNodalForces(P, g, V0[l], n);
-  f[0][l] = -(n[0] + n[3] + n[6]); f[1][l] = -(n[1] + n[4] + n[7]); f[2][l] = -(n[2] + n[5] + n[8]);
-  f[3][l] = n[0]; f[4][l] = n[1];  f[5][l] = n[2];
-  f[6][l] = n[3]; f[7][l] = n[4];  f[8][l] = n[5];
-  f[9][l] = n[6]; f[10][l] = n[7]; f[11][l] = n[8];
+  f[0][l]  = -(n[0] + n[3] + n[6]);
+  f[1][l]  = -(n[1] + n[4] + n[7]);
+  f[2][l]  = -(n[2] + n[5] + n[8]);
+  f[3][l]  = n[0];
+  f[4][l]  = n[1];
+  f[5][l]  = n[2];
+  f[6][l]  = n[3];
+  f[7][l]  = n[4];
+  f[8][l]  = n[5];
+  f[9][l]  = n[6];
+  f[10][l] = n[7];
+  f[11][l] = n[8];
 }
 
 INLINE void LaneGradient(const Pack *p, int l, double H[9])
 {
-  H[0] = p->H[0][l]; H[1] = p->H[1][l]; H[2] = p->H[2][l];
-  H[3] = p->H[3][l]; H[4] = p->H[4][l]; H[5] = p->H[5][l];
-  H[6] = p->H[6][l]; H[7] = p->H[7][l]; H[8] = p->H[8][l];
+  H[0] = p->H[0][l];
+  H[1] = p->H[1][l];
+  H[2] = p->H[2][l];
+  H[3] = p->H[3][l];
+  H[4] = p->H[4][l];
+  H[5] = p->H[5][l];
+  H[6] = p->H[6][l];
+  H[7] = p->H[7][l];
+  H[8] = p->H[8][l];
 }
 
 INLINE void PackForces(int law, const Pack *p, const double G[], const double V0[], double mu, double lambda, double f[12][L])
@@ -150,8 +173,8 @@ INLINE void AddForces(const int local[], double f[12][L], Scratch *s)
 {
   for (int a = 0; a < 4; a++) {
     for (int l = 0; l < L; l += 4) {
-      const int *n = local + a*L + l;
-      AddLanesToRows(&f[3*a][l], &f[3*a + 1][l], &f[3*a + 2][l], &s->f[n[0]], &s->f[n[1]], &s->f[n[2]], &s->f[n[3]]);
+      const int *n = local + a * L + l;
+      AddLanesToRows(&f[3 * a][l], &f[3 * a + 1][l], &f[3 * a + 2][l], &s->f[n[0]], &s->f[n[1]], &s->f[n[2]], &s->f[n[3]]);
     }
   }
 }
@@ -162,7 +185,7 @@ static void StoreBlock(const TLEDBlocks *b, int block, const Scratch *s, double 
   const int first = b->node_offset[block], n = b->node_offset[block + 1] - first;
 
   for (int a = 0; a < n; a++)
-    for (int k = 0; k < 3; k++) partial[3*(first + a) + k] = s->f[a][k];
+    for (int k = 0; k < 3; k++) partial[3 * (first + a) + k] = s->f[a][k];
 }
 
 static void ClearForces(const TLEDBlocks *b, int block, Scratch *s)
@@ -185,8 +208,8 @@ static void ForcesT4(const TLEDLoops *w, const double u[])
     LoadNodes(b, block, u, &s);
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
-      const int    *local = b->local + 4*L*pack;
-      const double *G = b->G + 9*L*pack, *V0 = b->V0 + L*pack;
+      const int    *local = b->local + 4 * L * pack;
+      const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack;
       broken += PackGradients(local, G, &s, &p);
       if (w->law == TLED_LAW_NEO_HOOKEAN) {
         PackLogarithms(p.jm1, p.ln_J);
@@ -207,8 +230,8 @@ static void GatherAverage(const TLEDLoops *w, double factor, double value[])
 #pragma omp for schedule(static)
   for (int a = 0; a < b->n_nodes; a++) {
     double sum = 0.0;
-    for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++) sum += w->partial[3*b->slot[k]];
-    value[a] = factor*w->weight[a]*sum;
+    for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++) sum += w->partial[3 * b->slot[k]];
+    value[a] = factor * w->weight[a] * sum;
   }
 }
 
@@ -216,7 +239,7 @@ static void GatherAverage(const TLEDLoops *w, double factor, double value[])
 static void AddValues(const int local[], const double value[], Scratch *s)
 {
   for (int l = 0; l < L; l++)
-    for (int a = 0; a < 4; a++) s->f[local[a*L + l]][0] += value[l];
+    for (int a = 0; a < 4; a++) s->f[local[a * L + l]][0] += value[l];
 }
 
 static void LoadValues(const TLEDBlocks *b, int block, const double from[], double to[])
@@ -240,10 +263,10 @@ void TLEDNodalVolumes_OpenMP(const TLEDLoops *w, const double u[])
     LoadNodes(b, block, u, &s);
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
-      broken += PackGradients(b->local + 4*L*pack, b->G + 9*L*pack, &s, &p);
+      broken += PackGradients(b->local + 4 * L * pack, b->G + 9 * L * pack, &s, &p);
 #pragma GCC ivdep
-      for (int l = 0; l < L; l++) dV[l] = b->V0[L*pack + l]*p.jm1[l];
-      AddValues(b->local + 4*L*pack, dV, &s);
+      for (int l = 0; l < L; l++) dV[l] = b->V0[L * pack + l] * p.jm1[l];
+      AddValues(b->local + 4 * L * pack, dV, &s);
     }
     StoreBlock(b, block, &s, w->partial);
     w->status[block] = broken;
@@ -255,12 +278,14 @@ void TLEDNodalVolumes_OpenMP(const TLEDLoops *w, const double u[])
 static void PackSum(const int local[], const double value[], double factor, double sum[])
 {
 #pragma GCC ivdep
-  for (int l = 0; l < L; l++) sum[l] = factor*((value[local[l]] + value[local[L + l]]) + (value[local[2*L + l]] + value[local[3*L + l]]));
+  for (int l = 0; l < L; l++)
+    sum[l] = factor * ((value[local[l]] + value[local[L + l]]) + (value[local[2 * L + l]] + value[local[3 * L + l]]));
 }
 
-/* Stress of the averaged gradient: V0 pbar of each lane or, with `forces`, the forces with the nodal pressures of the lanes. ln_Jbar is used
-   by the laws that need it. */
-INLINE void PackAverage(int law, int forces, const TLEDLoops *w, const Pack *p, const double jbar[], const double nodal[], const double G[], const double V0[], double pbar[], double f[12][L])
+/* Stress of the averaged gradient: V0 pbar of each lane or, with `forces`, the forces with the nodal pressures of the lanes.
+   ln_Jbar is used by the laws that need it. */
+INLINE void PackAverage(int law, int forces, const TLEDLoops *w, const Pack *p, const double jbar[], const double nodal[],
+                        const double G[], const double V0[], double pbar[], double f[12][L])
 {
   const double mu = w->mu, lambda = w->lambda;
   double       ln_Jbar[L] = {0.0};
@@ -277,7 +302,7 @@ INLINE void PackAverage(int law, int forces, const TLEDLoops *w, const Pack *p, 
     if (forces) {
       TLEDAverageStress(H, r, inv_J, Jbar, q, nodal[l], P);
       StoreForces(P, G, V0, l, f);
-    } else pbar[l] = q*V0[l];
+    } else pbar[l] = q * V0[l];
   }
 }
 
@@ -296,8 +321,8 @@ INLINE void PassAverage(int law, int forces, const TLEDLoops *w, const double u[
     if (forces) LoadValues(b, block, w->pressure, s.value[1]);
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
-      const int    *local = b->local + 4*L*pack;
-      const double *G = b->G + 9*L*pack, *V0 = b->V0 + L*pack;
+      const int    *local = b->local + 4 * L * pack;
+      const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack;
       (void)PackGradients(local, G, &s, &p);
       PackSum(local, s.value[0], 0.25, jbar);
       if (forces) {
@@ -343,8 +368,8 @@ void TLEDGatherForces_OpenMP(const TLEDLoops *w, double f[])
   for (int a = 0; a < b->n_nodes; a++) {
     double sum[3] = {0.0, 0.0, 0.0};
     for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++)
-      for (int i = 0; i < 3; i++) sum[i] += w->partial[3*b->slot[k] + i];
-    for (int i = 0; i < 3; i++) f[3*a + i] = sum[i];
+      for (int i = 0; i < 3; i++) sum[i] += w->partial[3 * b->slot[k] + i];
+    for (int i = 0; i < 3; i++) f[3 * a + i] = sum[i];
   }
 }
 

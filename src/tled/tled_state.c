@@ -75,7 +75,8 @@ PetscErrorCode TLEDGetVectors(TLED tled, Vec *u, Vec *v, Vec *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ TLEDGetPositions - current coordinates X + u [m] and velocities [m/s], n_nodes x 3, borrowed until u or v change; either may be NULL @*/
+/*@ TLEDGetPositions - current coordinates X + u [m] and velocities [m/s], n_nodes x 3, borrowed until u or v change; either may be
+ * NULL @*/
 PetscErrorCode TLEDGetPositions(TLED tled, const PetscReal *x[], const PetscReal *v[])
 {
   const PetscReal *u;
@@ -83,7 +84,7 @@ PetscErrorCode TLEDGetPositions(TLED tled, const PetscReal *x[], const PetscReal
   PetscFunctionBegin;
   if (x) {
     PetscCall(VecGetArrayRead(tled->u, &u));
-    for (PetscInt k = 0; k < 3*tled->mesh.n_nodes; k++) tled->x[k] = tled->mesh.X[k] + u[k];
+    for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) tled->x[k] = tled->mesh.X[k] + u[k];
     PetscCall(VecRestoreArrayRead(tled->u, &u));
     *x = tled->x;
   }
@@ -135,7 +136,7 @@ PetscErrorCode TLEDSetTime(TLED tled, PetscReal time)
 @*/
 PetscErrorCode TLEDSave(TLED tled)
 {
-  const PetscInt   n = 3*tled->mesh.n_nodes;
+  const PetscInt   n = 3 * tled->mesh.n_nodes;
   const PetscReal *from;
   PetscObjectState state;
 
@@ -147,8 +148,8 @@ PetscErrorCode TLEDSave(TLED tled)
   PetscCall(VecGetArrayRead(tled->v, &from));
   PetscCall(PetscArraycpy(tled->saved + n, from, n));
   PetscCall(VecRestoreArrayRead(tled->v, &from));
-  PetscCall(PetscArraycpy(tled->saved + 2*n, tled->force, n));
-  PetscCall(PetscArraycpy(tled->saved + 3*n, tled->mode, n));
+  PetscCall(PetscArraycpy(tled->saved + 2 * n, tled->force, n));
+  PetscCall(PetscArraycpy(tled->saved + 3 * n, tled->mode, n));
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &state));
   tled->saved_state       = tled->state;
   tled->saved_substeps    = tled->substeps;
@@ -164,7 +165,7 @@ PetscErrorCode TLEDSave(TLED tled)
 @*/
 PetscErrorCode TLEDRestore(TLED tled)
 {
-  const PetscInt n = 3*tled->mesh.n_nodes;
+  const PetscInt n = 3 * tled->mesh.n_nodes;
   PetscReal     *to;
 
   PetscFunctionBegin;
@@ -175,8 +176,8 @@ PetscErrorCode TLEDRestore(TLED tled)
   PetscCall(VecGetArrayWrite(tled->v, &to));
   PetscCall(PetscArraycpy(to, tled->saved + n, n));
   PetscCall(VecRestoreArrayWrite(tled->v, &to));
-  PetscCall(PetscArraycpy(tled->force, tled->saved + 2*n, n));
-  PetscCall(PetscArraycpy(tled->mode, tled->saved + 3*n, n));
+  PetscCall(PetscArraycpy(tled->force, tled->saved + 2 * n, n));
+  PetscCall(PetscArraycpy(tled->mode, tled->saved + 3 * n, n));
   tled->state       = tled->saved_state;
   tled->substeps    = tled->saved_substeps;
   tled->force_valid = tled->saved_force_valid;
@@ -197,12 +198,12 @@ PetscErrorCode TLEDRestore(TLED tled)
 @*/
 PetscErrorCode TLEDGetState(TLED tled, PetscInt *n, PetscReal state[])
 {
-  const PetscInt   m = 3*tled->mesh.n_nodes;
+  const PetscInt   m = 3 * tled->mesh.n_nodes;
   PetscObjectState now;
 
   PetscFunctionBegin;
   PetscCheck(tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() comes before TLEDGetState()");
-  *n = N_STATE + 2 + 2*m;
+  *n = N_STATE + 2 + 2 * m;
   if (!state) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &now));
   PetscCall(PetscMemcpy(state, &tled->state, sizeof tled->state));
@@ -222,10 +223,11 @@ PetscErrorCode TLEDGetState(TLED tled, PetscInt *n, PetscReal state[])
 @*/
 PetscErrorCode TLEDSetState(TLED tled, PetscInt n, const PetscReal state[])
 {
-  const PetscInt m = 3*tled->mesh.n_nodes;
+  const PetscInt m = 3 * tled->mesh.n_nodes;
 
   PetscFunctionBegin;
-  PetscCheck(n == N_STATE + 2 + 2*m, PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_SIZ, "a state of %" PetscInt_FMT " numbers, expected %" PetscInt_FMT, n, N_STATE + 2 + 2*m);
+  PetscCheck(n == N_STATE + 2 + 2 * m, PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_SIZ,
+             "a state of %" PetscInt_FMT " numbers, expected %" PetscInt_FMT, n, N_STATE + 2 + 2 * m);
   PetscCall(PetscMemcpy(&tled->state, state, sizeof tled->state));
   tled->substeps    = (PetscInt)state[N_STATE];
   tled->force_valid = state[N_STATE + 1] > 0.0 ? PETSC_TRUE : PETSC_FALSE;
@@ -239,8 +241,8 @@ PetscErrorCode TLEDSetState(TLED tled, PetscInt n, const PetscReal state[])
   TLEDGetStats - energies, momenta and volume of the current state
 
   Output Parameter:
-. stats - see tled.h; with stiffness damping, what its stresses lost is in damping_loss: the work of the internal forces that is not in the
-          strain energy
+. stats - see tled.h; with stiffness damping, what its stresses lost is in damping_loss: the work of the internal forces that is not
+in the strain energy
 
   Cost: one scalar pass over the elements
 @*/
@@ -256,13 +258,13 @@ PetscErrorCode TLEDGetStats(TLED tled, TLEDStats *s)
   PetscCall(VecGetArrayRead(tled->v, &v));
   PetscCall(TLEDStrain_Private(tled, u, &s->strain, &s->volume, NULL));
   for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
-    const PetscReal m = tled->mass[a], v2 = Dot3(&v[3*a], &v[3*a]);
+    const PetscReal m = tled->mass[a], v2 = Dot3(&v[3 * a], &v[3 * a]);
     PetscReal       x[3], r[3];
-    for (PetscInt k = 0; k < 3; k++) x[k] = X[3*a + k] + u[3*a + k];
-    Cross3(x, &v[3*a], r);
-    for (PetscInt k = 0; k < 3; k++) s->momentum[k] += m*v[3*a + k], s->angular[k] += m*r[k];
-    s->kinetic += 0.5*m*v2;
-    s->gravity_potential -= m*Dot3(tled->gravity, &u[3*a]);
+    for (PetscInt k = 0; k < 3; k++) x[k] = X[3 * a + k] + u[3 * a + k];
+    Cross3(x, &v[3 * a], r);
+    for (PetscInt k = 0; k < 3; k++) s->momentum[k] += m * v[3 * a + k], s->angular[k] += m * r[k];
+    s->kinetic += 0.5 * m * v2;
+    s->gravity_potential -= m * Dot3(tled->gravity, &u[3 * a]);
     speed2 = PetscMax(speed2, v2);
   }
   PetscCall(VecRestoreArrayRead(tled->v, &v));

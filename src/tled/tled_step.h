@@ -22,7 +22,8 @@ typedef struct {
 } TLEDStep;
 
 /* half kick and drift of one node; the works of the step's first half are added to sum */
-BY_HD void TLEDStepOpen(const TLEDStep *s, int motion, double m, const double f_int[3], const double f_ext[3], double u[3], double v[3], double sum[])
+BY_HD void TLEDStepOpen(const TLEDStep *s, int motion, double m, const double f_int[3], const double f_ext[3], double u[3],
+                        double v[3], double sum[])
 {
   const double h = 0.5*s->dt, keep = 1.0 - s->alpha*h;
 
@@ -43,7 +44,8 @@ BY_HD void TLEDStepOpen(const TLEDStep *s, int motion, double m, const double f_
 }
 
 /* half kick with the force at the new place; the works of the step's second half are added to sum */
-BY_HD void TLEDStepClose(const TLEDStep *s, int motion, double m, const double f_int[3], const double f_ext[3], double v[3], double sum[])
+BY_HD void TLEDStepClose(const TLEDStep *s, int motion, double m, const double f_int[3], const double f_ext[3], double v[3],
+                         double sum[])
 {
   const double h = 0.5*s->dt, keep = 1.0 / (1.0 + s->alpha*h);
 

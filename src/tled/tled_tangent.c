@@ -7,42 +7,42 @@
 /* column numbers of a node's neighbours: the element corners around it, sorted, each once */
 static PetscErrorCode BuildPattern(TLED tled)
 {
-  const PetscInt  n = tled->mesh.n_nodes, n_tets = tled->mesh.n_tets, *tets = tled->mesh.tets;
-  PetscInt       *offset, *around, *list, n_max = 0, n_list, n_blocks = 0;
+  const PetscInt n = tled->mesh.n_nodes, n_tets = tled->mesh.n_tets, *tets = tled->mesh.tets;
+  PetscInt      *offset, *around, *list, n_max = 0, n_list, n_blocks = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n + 1, &offset));
-  PetscCall(PetscMalloc1(4*n_tets, &around));
-  for (PetscInt k = 0; k < 4*n_tets; k++) offset[tets[k] + 1]++;
+  PetscCall(PetscMalloc1(4 * n_tets, &around));
+  for (PetscInt k = 0; k < 4 * n_tets; k++) offset[tets[k] + 1]++;
   for (PetscInt a = 0; a < n; a++) n_max = PetscMax(n_max, offset[a + 1]), offset[a + 1] += offset[a];
   for (PetscInt e = 0; e < n_tets; e++)
-    for (PetscInt a = 0; a < 4; a++) around[offset[tets[4*e + a]]++] = e;
+    for (PetscInt a = 0; a < 4; a++) around[offset[tets[4 * e + a]]++] = e;
   for (PetscInt a = n; a > 0; a--) offset[a] = offset[a - 1];
   offset[0] = 0;
-  PetscCall(PetscMalloc1(4*n_max + 1, &list));
+  PetscCall(PetscMalloc1(4 * n_max + 1, &list));
   PetscCall(PetscMalloc1(n + 1, &tled->tangent_row));
-  PetscCall(PetscMalloc1(16*n_tets, &tled->tangent_column)); /* more than enough; the pattern has about a third of it */
-  PetscCall(PetscMalloc1(16*n_tets, &tled->tangent_slot));
+  PetscCall(PetscMalloc1(16 * n_tets, &tled->tangent_column)); /* more than enough; the pattern has about a third of it */
+  PetscCall(PetscMalloc1(16 * n_tets, &tled->tangent_slot));
   tled->tangent_row[0] = 0;
   for (PetscInt a = 0; a < n; a++) {
     n_list = 0;
     for (PetscInt k = offset[a]; k < offset[a + 1]; k++)
-      for (PetscInt c = 0; c < 4; c++) list[n_list++] = tets[4*around[k] + c];
+      for (PetscInt c = 0; c < 4; c++) list[n_list++] = tets[4 * around[k] + c];
     PetscCall(PetscSortRemoveDupsInt(&n_list, list));
     for (PetscInt k = 0; k < n_list; k++) tled->tangent_column[n_blocks++] = list[k];
     tled->tangent_row[a + 1] = n_blocks;
   }
   for (PetscInt e = 0; e < n_tets; e++) {
     for (PetscInt a = 0; a < 4; a++) {
-      const PetscInt row = tets[4*e + a], first = tled->tangent_row[row];
+      const PetscInt row = tets[4 * e + a], first = tled->tangent_row[row];
       for (PetscInt c = 0; c < 4; c++) {
         PetscInt place;
-        PetscCall(PetscFindInt(tets[4*e + c], tled->tangent_row[row + 1] - first, &tled->tangent_column[first], &place));
-        tled->tangent_slot[16*e + 4*a + c] = first + place;
+        PetscCall(PetscFindInt(tets[4 * e + c], tled->tangent_row[row + 1] - first, &tled->tangent_column[first], &place));
+        tled->tangent_slot[16 * e + 4 * a + c] = first + place;
       }
     }
   }
-  PetscCall(PetscMalloc1(9*n_blocks, &tled->tangent_value));
+  PetscCall(PetscMalloc1(9 * n_blocks, &tled->tangent_value));
   PetscCall(PetscFree(offset));
   PetscCall(PetscFree(around));
   PetscCall(PetscFree(list));
@@ -56,11 +56,11 @@ static PetscErrorCode CreateMatrix(TLED tled, Mat *K)
   PetscInt      *nnz;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(3*n, &nnz));
+  PetscCall(PetscMalloc1(3 * n, &nnz));
   for (PetscInt a = 0; a < n; a++)
-    for (PetscInt i = 0; i < 3; i++) nnz[3*a + i] = 3*(tled->tangent_row[a + 1] - tled->tangent_row[a]);
+    for (PetscInt i = 0; i < 3; i++) nnz[3 * a + i] = 3 * (tled->tangent_row[a + 1] - tled->tangent_row[a]);
   PetscCall(MatCreate(PETSC_COMM_SELF, K));
-  PetscCall(MatSetSizes(*K, 3*n, 3*n, 3*n, 3*n));
+  PetscCall(MatSetSizes(*K, 3 * n, 3 * n, 3 * n, 3 * n));
   PetscCall(MatSetBlockSize(*K, 3));
   PetscCall(MatSetType(*K, MATSEQAIJ));
   PetscCall(MatSeqAIJSetPreallocation(*K, 0, nnz));
@@ -77,54 +77,54 @@ static void SeenGradient(const TLEDLoops *w, const double H[9], const PetscInt c
     for (int k = 0; k < 9; k++) seen[k] = H[k];
     return;
   }
-  for (int a = 0; a < 4; a++) jbar += 0.25*w->nodal[corner[a]];
+  for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]];
   (void)TLEDAverageGradient(H, 1.0 / (1.0 + TLEDJacobianMinusOne(H)), 1.0 + jbar, seen);
 }
 
 /* block values, element after element in a fixed order */
 static void FillValues(TLED tled, const PetscReal u[])
 {
-  const TLEDBlocks *b = &tled->blocks;
-  const TLEDLoops  *w = &tled->loops;
-  PetscReal        *value = tled->tangent_value;
-  const double      lambda_prime = w->anp && w->lambda > BULK*w->mu ? BULK*w->mu : w->lambda;
+  const TLEDBlocks *b            = &tled->blocks;
+  const TLEDLoops  *w            = &tled->loops;
+  PetscReal        *value        = tled->tangent_value;
+  const double      lambda_prime = w->anp && w->lambda > BULK * w->mu ? BULK * w->mu : w->lambda;
 
-  for (PetscInt k = 0; k < 9*tled->tangent_row[tled->mesh.n_nodes]; k++) value[k] = 0.0;
-  for (int l = 0; l < TLED_LANES*b->n_packs; l++) {
+  for (PetscInt k = 0; k < 9 * tled->tangent_row[tled->mesh.n_nodes]; k++) value[k] = 0.0;
+  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
     const int       pack = l / TLED_LANES, lane = l % TLED_LANES, e = b->element[l];
-    const PetscInt *corner = &tled->mesh.tets[4*e], *slot = &tled->tangent_slot[16*e];
+    const PetscInt *corner = &tled->mesh.tets[4 * e], *slot = &tled->tangent_slot[16 * e];
     double          d[9], G[9], H[9], seen[9], K[144];
     if (e < 0) continue;
-    for (int k = 0; k < 9; k++) G[k] = b->G[(9*pack + k)*TLED_LANES + lane];
-    for (int a = 0; a < 3; a++) Sub3(&u[3*corner[a + 1]], &u[3*corner[0]], &d[3*a]);
+    for (int k = 0; k < 9; k++) G[k] = b->G[(9 * pack + k) * TLED_LANES + lane];
+    for (int a = 0; a < 3; a++) Sub3(&u[3 * corner[a + 1]], &u[3 * corner[0]], &d[3 * a]);
     TLEDDisplacementGradient(d, G, H);
     SeenGradient(w, H, corner, seen);
     TLEDStiffness(w->law, seen, G, b->V0[l], w->mu, w->lambda, lambda_prime, K);
     for (int a = 0; a < 4; a++)
       for (int c = 0; c < 4; c++)
         for (int i = 0; i < 3; i++)
-          for (int k = 0; k < 3; k++) value[9*slot[4*a + c] + 3*i + k] += K[12*(3*a + i) + 3*c + k];
+          for (int k = 0; k < 3; k++) value[9 * slot[4 * a + c] + 3 * i + k] += K[12 * (3 * a + i) + 3 * c + k];
   }
 }
 
 /* put the blocks into the rows of the matrix */
 static PetscErrorCode SetRows(TLED tled, Mat K)
 {
-  const PetscInt *row = tled->tangent_row;
+  const PetscInt *row   = tled->tangent_row;
   PetscInt        n_max = 0, *column;
   PetscReal      *line;
 
   PetscFunctionBegin;
   for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) n_max = PetscMax(n_max, row[a + 1] - row[a]);
-  PetscCall(PetscMalloc2(3*n_max, &column, 9*n_max, &line));
+  PetscCall(PetscMalloc2(3 * n_max, &column, 9 * n_max, &line));
   for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
-    const PetscInt n = row[a + 1] - row[a], rows[3] = {3*a, 3*a + 1, 3*a + 2};
+    const PetscInt n = row[a + 1] - row[a], rows[3] = {3 * a, 3 * a + 1, 3 * a + 2};
     for (PetscInt k = 0; k < n; k++)
       for (PetscInt i = 0; i < 3; i++) {
-        column[3*k + i] = 3*tled->tangent_column[row[a] + k] + i;
-        for (PetscInt j = 0; j < 3; j++) line[3*n*i + 3*k + j] = tled->tangent_value[9*(row[a] + k) + 3*i + j];
+        column[3 * k + i] = 3 * tled->tangent_column[row[a] + k] + i;
+        for (PetscInt j = 0; j < 3; j++) line[3 * n * i + 3 * k + j] = tled->tangent_value[9 * (row[a] + k) + 3 * i + j];
       }
-    PetscCall(MatSetValues(K, 3, rows, 3*n, column, line, INSERT_VALUES));
+    PetscCall(MatSetValues(K, 3, rows, 3 * n, column, line, INSERT_VALUES));
   }
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
@@ -145,10 +145,10 @@ static PetscErrorCode SetRows(TLED tled, Mat K)
   Output Parameter:
 . K - AIJ, block size 3 [N/m]; rows of constrained nodes are kept like all others
 
-  Exact for the element t4. For `anp` the exact tangent couples nodes two elements apart. Here each element's own part is assembled at the
-  averaged gradient Fbar, with lambda' = min(lambda, 2 mu) in place of lambda in its volumetric part, which would lock: a response to
-  loads (measured in bending: 0.87 to 1.19 of the true compliance for nu 0.41 to 0.49 on three meshes, against 0.45 to 0.87 with lambda),
-  not the derivative that Newton's method needs.
+  Exact for the element t4. For `anp` the exact tangent couples nodes two elements apart. Here each element's own part is assembled
+at the averaged gradient Fbar, with lambda' = min(lambda, 2 mu) in place of lambda in its volumetric part, which would lock: a
+response to loads (measured in bending: 0.87 to 1.19 of the true compliance for nu 0.41 to 0.49 on three meshes, against 0.45 to
+0.87 with lambda), not the derivative that Newton's method needs.
 
   Cost: one pass over the elements, no new pattern after the first call.  Tests: tests/unit/tled/test_static.c, test_force.c,
   tests/convergence/test_tled_reference.c

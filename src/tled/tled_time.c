@@ -1,11 +1,11 @@
 /* tled_time.c - advancing the body: substeps of the stable size, the works that go with them, breakdown. */
 #include "tled/tled_impl.h"
 
-#define RENEW_STEPS     64   /* substeps between two looks at the deformation                                        */
-#define RENEW_STRETCH   0.05 /* relative change of the smallest det F or largest |F|^2 that asks for a new critical step */
-#define RENEW_LATEST    1024 /* substeps after which it is renewed anyway                                             */
-#define FIRST_STEPS     100  /* iterations of the first critical step                                                 */
-#define FOLLOWING_STEPS 12   /* of the following ones, which start from the last mode                                 */
+#define RENEW_STEPS 64     /* substeps between two looks at the deformation                                        */
+#define RENEW_STRETCH 0.05 /* relative change of the smallest det F or largest |F|^2 that asks for a new critical step */
+#define RENEW_LATEST 1024  /* substeps after which it is renewed anyway                                             */
+#define FIRST_STEPS 100    /* iterations of the first critical step                                                 */
+#define FOLLOWING_STEPS 12 /* of the following ones, which start from the last mode                                 */
 
 /* internal forces at u, raw arrays; BY_ERR_BREAKDOWN, not reported, when an element is inverted or NaN */
 PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[])
@@ -26,15 +26,18 @@ static PetscReal LargestStep(TLED tled)
   const PetscReal critical = tled->state.critical;
 
   if (critical == PETSC_MAX_REAL) return PETSC_MAX_REAL;
-  return tled->params.safety*TLEDStableStep(critical, tled->params.stiffness_damping);
+  return tled->params.safety * TLEDStableStep(critical, tled->params.stiffness_damping);
 }
 
 static PetscInt CountSubsteps(TLED tled, PetscReal dt)
 {
-  return PetscMax(1, (PetscInt)PetscCeilReal(dt / LargestStep(tled)*(1.0 - 1e-12)));
+  return PetscMax(1, (PetscInt)PetscCeilReal(dt / LargestStep(tled) * (1.0 - 1e-12)));
 }
 
-static PetscBool Changed(PetscReal now, PetscReal then) { return PetscAbsReal(now - then) > RENEW_STRETCH*then ? PETSC_TRUE : PETSC_FALSE; }
+static PetscBool Changed(PetscReal now, PetscReal then)
+{
+  return PetscAbsReal(now - then) > RENEW_STRETCH * then ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* Know the critical step at u: computed when it is not known, after RENEW_LATEST substeps, and when the body has deformed since. It
    depends on the state alone. */
@@ -48,7 +51,8 @@ static PetscErrorCode RenewCritical(TLED tled, const PetscReal u[], PetscReal ti
   if (s->critical > 0.0 && s->since < s->look) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDStrain_Private(tled, u, NULL, NULL, stretch));
   s->look = s->since + RENEW_STEPS;
-  if (s->critical > 0.0 && s->since < RENEW_LATEST && !Changed(stretch[0], s->stretch[0]) && !Changed(stretch[1], s->stretch[1])) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->critical > 0.0 && s->since < RENEW_LATEST && !Changed(stretch[0], s->stretch[0]) && !Changed(stretch[1], s->stretch[1]))
+    PetscFunctionReturn(PETSC_SUCCESS);
   ierr = TLEDCriticalStep_Private(tled, u, s->critical > 0.0 ? FOLLOWING_STEPS : FIRST_STEPS, &s->critical);
   if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, time));
   PetscCall(ierr);
@@ -65,31 +69,32 @@ typedef struct {
   PetscReal        beta; /* stiffness damping [s] */
 } Work;
 
-/* One pass over the nodes, chunk by chunk: close the substep before (gathering its forces) and open the next. All threads call it. */
+/* One pass over the nodes, chunk by chunk: close the substep before (gathering its forces) and open the next. All threads
+   call it. */
 static void NodePass(TLED tled, const Work *w, int close, int open)
 {
   const TLEDLoops  *loops = &tled->loops;
-  const TLEDBlocks *b = loops->blocks;
+  const TLEDBlocks *b     = loops->blocks;
   const int         n = b->n_nodes, n_chunks = (n + TLED_CHUNK - 1) / TLED_CHUNK;
 
 #pragma omp for schedule(static)
   for (int chunk = 0; chunk < n_chunks; chunk++) {
-    double   *sum = &tled->sums[TLED_SUMS*chunk];
-    const int end = (chunk + 1)*TLED_CHUNK < n ? (chunk + 1)*TLED_CHUNK : n;
-    for (int a = chunk*TLED_CHUNK; a < end; a++) {
-      double *force = &tled->force[3*a], *u = &w->u[3*a], *v = &w->v[3*a];
+    double   *sum = &tled->sums[TLED_SUMS * chunk];
+    const int end = (chunk + 1) * TLED_CHUNK < n ? (chunk + 1) * TLED_CHUNK : n;
+    for (int a = chunk * TLED_CHUNK; a < end; a++) {
+      double *force = &tled->force[3 * a], *u = &w->u[3 * a], *v = &w->v[3 * a];
       if (close) {
         double f[3] = {0.0, 0.0, 0.0};
         for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++)
-          for (int i = 0; i < 3; i++) f[i] += loops->partial[3*b->slot[k] + i];
+          for (int i = 0; i < 3; i++) f[i] += loops->partial[3 * b->slot[k] + i];
         for (int i = 0; i < 3; i++) force[i] = f[i];
-        TLEDStepClose(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3*a], v, sum);
-        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3*a], u, &w->f[3*a], sum);
+        TLEDStepClose(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3 * a], v, sum);
+        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, &w->f[3 * a], sum);
       }
       if (open) {
-        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3*a], u, &w->f[3*a], sum);
-        TLEDStepOpen(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3*a], u, v, sum);
-        for (int i = 0; i < 3 && w->beta > 0.0; i++) w->probe[3*a + i] = u[i] + w->beta*v[i];
+        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, &w->f[3 * a], sum);
+        TLEDStepOpen(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3 * a], u, v, sum);
+        for (int i = 0; i < 3 && w->beta > 0.0; i++) w->probe[3 * a + i] = u[i] + w->beta * v[i];
       }
     }
   }
@@ -136,7 +141,7 @@ static void AddWorks(TLED tled)
   const PetscInt n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
 
   for (PetscInt c = 0; c < n_chunks; c++) {
-    PetscReal *sum = &tled->sums[TLED_SUMS*c];
+    PetscReal *sum = &tled->sums[TLED_SUMS * c];
     tled->state.external_work += sum[TLED_SUM_EXTERNAL];
     tled->state.damping_loss += sum[TLED_SUM_DAMPING];
     tled->state.internal_work += sum[TLED_SUM_INTERNAL];
@@ -147,7 +152,7 @@ static void AddWorks(TLED tled)
 
 static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *n_substeps)
 {
-  const PetscReal start = tled->state.time;
+  const PetscReal start  = tled->state.time;
   PetscReal       passed = 0.0, h = 0.0;
   PetscInt        left = 0;
 
@@ -158,17 +163,17 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
   tled->force_valid = PETSC_FALSE; /* until this call has come to its end */
   do {
     ByCall(RenewCritical(tled, w->u, start + passed));
-    if (!left || h > LargestStep(tled)*(1.0 + 1e-9)) { /* at first, and when the body has stiffened */
+    if (!left || h > LargestStep(tled) * (1.0 + 1e-9)) { /* at first, and when the body has stiffened */
       left = CountSubsteps(tled, dt - passed);
       h    = (dt - passed) / (PetscReal)left;
     }
-    const PetscInt m = PetscMin(left, RENEW_STEPS);
+    const PetscInt m    = PetscMin(left, RENEW_STEPS);
     w->step.dt          = h;
     const PetscInt done = Substeps(tled, w, m);
     AddWorks(tled);
     *n_substeps += done;
     tled->state.since += (PetscReal)done;
-    passed += h*(PetscReal)done;
+    passed += h * (PetscReal)done;
     left -= done;
     if (done < m) {
       tled->state.time = start + passed + h;
@@ -210,7 +215,8 @@ PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps)
 
   PetscFunctionBegin;
   PetscCheck(tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() comes before TLEDAdvance()");
-  PetscCheck(dt > 0.0 && !PetscIsInfOrNanReal(dt), PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_OUTOFRANGE, "dt = %g, expected a finite number > 0 [s]", (double)dt);
+  PetscCheck(dt > 0.0 && !PetscIsInfOrNanReal(dt), PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_OUTOFRANGE,
+             "dt = %g, expected a finite number > 0 [s]", (double)dt);
   PetscCall(PetscLogEventBegin(TLED_EVENT_ADVANCE, tled, 0, 0, 0));
   w.probe      = tled->probe;
   w.beta       = p->stiffness_damping;
@@ -262,8 +268,8 @@ PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps)
 /*@
   TLEDGetCriticalStep - largest stable step of the current state [s], without the safety factor
 
-  2/omega_max by power iteration, shortened when there is stiffness damping; computed afresh by this call. PETSC_MAX_REAL when no node is
-  free.
+  2/omega_max by power iteration, shortened when there is stiffness damping; computed afresh by this call. PETSC_MAX_REAL when no
+node is free.
 
   Errors: BY_ERR_BREAKDOWN when an element of the current state is inverted
 
@@ -274,6 +280,7 @@ PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt)
   PetscFunctionBegin;
   tled->state.critical = 0.0;
   ByCall(RenewNow(tled));
-  *dt = tled->state.critical == PETSC_MAX_REAL ? PETSC_MAX_REAL : TLEDStableStep(tled->state.critical, tled->params.stiffness_damping);
+  *dt = tled->state.critical == PETSC_MAX_REAL ? PETSC_MAX_REAL
+                                               : TLEDStableStep(tled->state.critical, tled->params.stiffness_damping);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

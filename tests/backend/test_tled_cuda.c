@@ -1,14 +1,14 @@
-/* The T4 forces on the device are those of the CPU, to the rounding that fused operations and another order of sums leave. Ends with
-   status 77 (skipped) where there is no device or no CUDA in this build. */
+/* The T4 forces on the device are those of the CPU, to the rounding that fused operations and another order of sums leave. Ends
+   with status 77 (skipped) where there is no device or no CUDA in this build. */
 #include "unit/tled/body.h"
 #include "backend.h"
 #include "tled/tled_device.h"
 
 static void Bend(const PetscReal X[3], PetscReal u[3])
 {
-  u[0] = -0.3*X[0]*X[2] + 0.02*sin(9*X[1]);
-  u[1] = 0.05*X[1]*X[0];
-  u[2] = -0.25*X[0]*X[0] + 0.03*cos(7*X[2]);
+  u[0] = -0.3 * X[0] * X[2] + 0.02 * sin(9 * X[1]);
+  u[1] = 0.05 * X[1] * X[0];
+  u[2] = -0.25 * X[0] * X[0] + 0.03 * cos(7 * X[2]);
 }
 
 static void DeviceForces_AreTheCPUs(void **state)
@@ -31,15 +31,15 @@ static void DeviceForces_AreTheCPUs(void **state)
     SetVec(tled, u, Bend);
     assert_petsc(TLEDInternalForce(tled, u, f));
     assert_petsc(VecNorm(f, NORM_INFINITY, &top));
-    assert_petsc(PetscMalloc2(3*n, &on_device, 3*n, &again));
+    assert_petsc(PetscMalloc2(3 * n, &on_device, 3 * n, &again));
     assert_petsc(TLEDDeviceCreate(tled, &device));
     assert_petsc(VecGetArrayRead(u, &ua));
     assert_petsc(TLEDDeviceForces(device, ua, on_device));
     assert_petsc(TLEDDeviceForces(device, ua, again));
     assert_petsc(VecRestoreArrayRead(u, &ua));
     assert_petsc(VecGetArrayRead(f, &fa));
-    for (PetscInt k = 0; k < 3*n; k++) assert_close(on_device[k], fa[k], 1e-13, top);
-    assert_memory_equal(on_device, again, 3*(size_t)n*sizeof *again);
+    for (PetscInt k = 0; k < 3 * n; k++) assert_close(on_device[k], fa[k], 1e-13, top);
+    assert_memory_equal(on_device, again, 3 * (size_t)n * sizeof *again);
     assert_petsc(VecRestoreArrayRead(f, &fa));
     assert_petsc(TLEDDeviceDestroy(&device));
     assert_petsc(PetscFree2(on_device, again));
@@ -50,7 +50,7 @@ static void DeviceForces_AreTheCPUs(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(DeviceForces_AreTheCPUs)};
+  const struct CMUnitTest tests[]   = {cmocka_unit_test(DeviceForces_AreTheCPUs)};
   PetscInt                n_devices = 0;
   char                    name[256];
 

@@ -1,8 +1,9 @@
-/* The explicit solid, run in time, against an independent finite element code (DOLFINx 0.5.2 with PETSc 3.18.5) on the same meshes: static
-   states by damped motion, the peak of a release under gravity, and what locks and what does not near incompressibility. Prints a table.
+/* The explicit solid, run in time, against an independent finite element code (DOLFINx 0.5.2 with PETSc 3.18.5) on the same meshes:
+   static states by damped motion, the peak of a release under gravity, and what locks and what does not near incompressibility.
+   Prints a table.
 
-   Beam: 1 x 0.1 x 0.1 m, clamped at x = 0, E 3 MPa, rho 1000 kg/m^3, g 9.81 m/s^2 in -z. Cook: 48 x 44/16 x 8 mm, clamped at x = 0, dead traction
-   6.25 MPa in y on x = 48 mm, mu 80.194 MPa, nu 0.499, sides free. */
+   Beam: 1 x 0.1 x 0.1 m, clamped at x = 0, E 3 MPa, rho 1000 kg/m^3, g 9.81 m/s^2 in -z. Cook: 48 x 44/16 x 8 mm, clamped at x = 0,
+   dead traction 6.25 MPa in y on x = 48 mm, mu 80.194 MPa, nu 0.499, sides free. */
 #include "unit/tled/body.h"
 #include <petscksp.h>
 
@@ -13,15 +14,15 @@ typedef struct {
 } Static;
 
 static const Static beam[] = {
-  {"h1", TLED_MATERIAL_NEO_HOOKEAN, 0.3, -0.2709548025632535, 5.317299312167156},
-  {"h2", TLED_MATERIAL_NEO_HOOKEAN, 0.3, -0.345839747271417, 6.569205761610543},
-  {"h3", TLED_MATERIAL_NEO_HOOKEAN, 0.3, -0.3799918048993587, 7.165240450128981},
-  {"h1", TLED_MATERIAL_NEO_HOOKEAN, 0.45, -0.21439682744396152, 4.234257721621486},
-  {"h2", TLED_MATERIAL_NEO_HOOKEAN, 0.45, -0.30795936798429296, 5.8353545057149185},
-  {"h1", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.3, -0.27165781027625807, 5.341168338410373},
-  {"h2", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.3, -0.34663580534087773, 6.5926365475208755},
-  {"h1", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.45, -0.21481358917485185, 4.248196232583419},
-  {"h2", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.45, -0.30909323228393804, 5.867932346626014},
+    {"h1", TLED_MATERIAL_NEO_HOOKEAN, 0.3, -0.2709548025632535, 5.317299312167156},
+    {"h2", TLED_MATERIAL_NEO_HOOKEAN, 0.3, -0.345839747271417, 6.569205761610543},
+    {"h3", TLED_MATERIAL_NEO_HOOKEAN, 0.3, -0.3799918048993587, 7.165240450128981},
+    {"h1", TLED_MATERIAL_NEO_HOOKEAN, 0.45, -0.21439682744396152, 4.234257721621486},
+    {"h2", TLED_MATERIAL_NEO_HOOKEAN, 0.45, -0.30795936798429296, 5.8353545057149185},
+    {"h1", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.3, -0.27165781027625807, 5.341168338410373},
+    {"h2", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.3, -0.34663580534087773, 6.5926365475208755},
+    {"h1", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.45, -0.21481358917485185, 4.248196232583419},
+    {"h2", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.45, -0.30909323228393804, 5.867932346626014},
 };
 
 static TLED Beam(const char mesh[], TLEDParams **p)
@@ -57,9 +58,10 @@ static void Relaxation_ReachesTheStaticState(void **state)
     assert_petsc(TLEDAdvance(tled, 2.5, &n));
     assert_petsc(TLEDGetPositions(tled, &x, NULL));
     assert_petsc(TLEDGetStats(tled, &s));
-    printf("%-4s %-19s  %.2f  %-17.10f  %-8.1e  %-17.10f  %-8.1e  %d\n", beam[i].mesh, beam[i].material ? "st_venant_kirchhoff" : "neo_hookean", beam[i].poisson,
-           x[3*tip + 2] - 0.05, fabs((x[3*tip + 2] - 0.05) / beam[i].tip - 1), s.strain, fabs(s.strain / beam[i].energy - 1), (int)n);
-    assert_close(x[3*tip + 2] - 0.05, beam[i].tip, 1e-4, beam[i].tip);
+    printf("%-4s %-19s  %.2f  %-17.10f  %-8.1e  %-17.10f  %-8.1e  %d\n", beam[i].mesh,
+           beam[i].material ? "st_venant_kirchhoff" : "neo_hookean", beam[i].poisson, x[3 * tip + 2] - 0.05,
+           fabs((x[3 * tip + 2] - 0.05) / beam[i].tip - 1), s.strain, fabs(s.strain / beam[i].energy - 1), (int)n);
+    assert_close(x[3 * tip + 2] - 0.05, beam[i].tip, 1e-4, beam[i].tip);
     assert_close(s.strain, beam[i].energy, 1e-4, beam[i].energy);
     assert_petsc(TLEDDestroy(&tled));
   }
@@ -68,34 +70,38 @@ static void Relaxation_ReachesTheStaticState(void **state)
 /* maximum of the cubic a + b t + c t^2 + d t^3 fitted to samples by least squares (normal equations, t centred and scaled) */
 static void FitPeak(int n, const double t[], const double y[], double *t_peak, double *y_peak)
 {
-  double A[4][5] = {{0}}, c[4], middle = 0.5*(t[0] + t[n - 1]), half = 0.5*(t[n - 1] - t[0]), s;
+  double A[4][5] = {{0}}, c[4], middle = 0.5 * (t[0] + t[n - 1]), half = 0.5 * (t[n - 1] - t[0]), s;
 
   for (int k = 0; k < n; k++) {
     const double q[4] = {1, (t[k] - middle) / half, pow((t[k] - middle) / half, 2), pow((t[k] - middle) / half, 3)};
     for (int i = 0; i < 4; i++) {
-      for (int j = 0; j < 4; j++) A[i][j] += q[i]*q[j];
-      A[i][4] += q[i]*y[k];
+      for (int j = 0; j < 4; j++) A[i][j] += q[i] * q[j];
+      A[i][4] += q[i] * y[k];
     }
   }
   for (int i = 0; i < 4; i++)
     for (int r = i + 1; r < 4; r++)
-      for (int j = 4; j >= i; j--) A[r][j] -= A[i][j]*A[r][i] / A[i][i];
+      for (int j = 4; j >= i; j--) A[r][j] -= A[i][j] * A[r][i] / A[i][i];
   for (int i = 3; i >= 0; i--) {
     c[i] = A[i][4];
-    for (int j = i + 1; j < 4; j++) c[i] -= A[i][j]*c[j];
+    for (int j = i + 1; j < 4; j++) c[i] -= A[i][j] * c[j];
     c[i] /= A[i][i];
   }
-  s       = (-2*c[2] - sqrt(4*c[2]*c[2] - 12*c[3]*c[1])) / (6*c[3]); /* the root where the cubic is concave is found from both */
-  if (!(2*c[2] + 6*c[3]*s < 0)) s = (-2*c[2] + sqrt(4*c[2]*c[2] - 12*c[3]*c[1])) / (6*c[3]);
-  *t_peak = middle + half*s;
-  *y_peak = c[0] + s*(c[1] + s*(c[2] + s*c[3]));
+  s = (-2 * c[2] - sqrt(4 * c[2] * c[2] - 12 * c[3] * c[1])) /
+      (6 * c[3]); /* the root where the cubic is concave is found from both */
+  if (!(2 * c[2] + 6 * c[3] * s < 0)) s = (-2 * c[2] + sqrt(4 * c[2] * c[2] - 12 * c[3] * c[1])) / (6 * c[3]);
+  *t_peak = middle + half * s;
+  *y_peak = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }
 
 /* gravity switched on: the first peak of the free end, fitted as the reference was (cubic through +-0.08 s) and its implicit
    integration extrapolated to dt = 0: 0.51330 m at 0.42202 s and 0.62658 m at 0.47161 s with lumped masses */
 static void Release_PeaksWhereAndWhenItShould(void **state)
 {
-  static const struct { const char *mesh; double peak, time; } release[] = {{"h1", 0.5132985573524217, 0.42202412897051234}, {"h2", 0.6265806913343781, 0.4716146144968641}};
+  static const struct {
+    const char *mesh;
+    double      peak, time;
+  } release[] = {{"h1", 0.5132985573524217, 0.42202412897051234}, {"h2", 0.6265806913343781, 0.4716146144968641}};
 
   (void)state;
   for (size_t i = 0; i < 2; i++) {
@@ -112,12 +118,13 @@ static void Release_PeaksWhereAndWhenItShould(void **state)
       const PetscReal *x;
       assert_petsc(TLEDAdvance(tled, 0.001, NULL));
       assert_petsc(TLEDGetPositions(tled, &x, NULL));
-      if (fabs(k*0.001 - release[i].time) <= 0.08) t[n] = k*0.001, y[n++] = 0.05 - x[3*tip + 2];
+      if (fabs(k * 0.001 - release[i].time) <= 0.08) t[n] = k * 0.001, y[n++] = 0.05 - x[3 * tip + 2];
       assert_petsc(TLEDGetStats(tled, &s));
       worst = fmax(worst, fabs(s.kinetic + s.strain + s.gravity_potential));
     }
     FitPeak(n, t, y, &t_peak, &peak);
-    printf("release %s: peak %.6f m (reference %.6f) at %.5f s (%.5f), energy error %.1e of %.1f J\n", release[i].mesh, peak, release[i].peak, t_peak, release[i].time, worst, s.strain + s.kinetic);
+    printf("release %s: peak %.6f m (reference %.6f) at %.5f s (%.5f), energy error %.1e of %.1f J\n", release[i].mesh, peak,
+           release[i].peak, t_peak, release[i].time, worst, s.strain + s.kinetic);
     assert_close(peak, release[i].peak, 2e-4, release[i].peak); /* axial waves ride on the peak in both; the fit leaves that much */
     assert_close(t_peak, release[i].time, 5e-4, release[i].time);
     assert_true(worst < 0.01);
@@ -125,8 +132,8 @@ static void Release_PeaksWhereAndWhenItShould(void **state)
   }
 }
 
-/* nearly incompressible: t4 is the independent code's locking P1, anp is not locked. Reference for the error: mixed P2-P1 elements on the finest
-   graded mesh, 8.3259 mm */
+/* nearly incompressible: t4 is the independent code's locking P1, anp is not locked. Reference for the error: mixed P2-P1 elements
+   on the finest graded mesh, 8.3259 mm */
 static void NearIncompressibility_DoesNotLockAnp(void **state)
 {
   static const char *const mesh[2] = {"cook_h1.msh", "cook_h2.msh"};
@@ -148,7 +155,7 @@ static void NearIncompressibility_DoesNotLockAnp(void **state)
       snprintf(path, sizeof path, "tests/meshes/%s", mesh[i]);
       tled       = NewBody(path, &p);
       p->poisson = 0.499;
-      p->young   = 2*80.194e6*1.499;
+      p->young   = 2 * 80.194e6 * 1.499;
       p->element = element;
       p->damping = 4000.0;
       AddName(&p->fixed, "clamp");
@@ -159,16 +166,17 @@ static void NearIncompressibility_DoesNotLockAnp(void **state)
       assert_petsc(TLEDGetVectors(tled, NULL, NULL, &force));
       assert_petsc(VecGetArray(force, &f));
       for (PetscInt t = 0; t < n; t++) { /* the face x = 48 mm: areas in the y-z plane */
-        const PetscReal *a = &X[3*tri[3*t]], *b = &X[3*tri[3*t + 1]], *c = &X[3*tri[3*t + 2]];
-        const double     area = 0.5*fabs((b[1] - a[1])*(c[2] - a[2]) - (b[2] - a[2])*(c[1] - a[1]));
-        for (int k = 0; k < 3; k++) f[3*tri[3*t + k] + 1] += 6.25e6*area / 3.0;
+        const PetscReal *a = &X[3 * tri[3 * t]], *b = &X[3 * tri[3 * t + 1]], *c = &X[3 * tri[3 * t + 2]];
+        const double     area = 0.5 * fabs((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]));
+        for (int k = 0; k < 3; k++) f[3 * tri[3 * t + k] + 1] += 6.25e6 * area / 3.0;
       }
       assert_petsc(VecRestoreArray(force, &f));
       assert_petsc(TLEDAdvance(tled, 8e-3, NULL));
       corner = NodeAt(tled, 0.048, 0.06, 0.0);
       assert_petsc(TLEDGetPositions(tled, &x, NULL));
-      uy = x[3*corner + 1] - 0.06;
-      printf("%-12s %-8s %-26.4f %.1f %%\n", mesh[i], element == TLED_ELEMENT_T4 ? "t4" : "anp", 1e3*uy, 100*(uy / 0.008325899217964183 - 1));
+      uy = x[3 * corner + 1] - 0.06;
+      printf("%-12s %-8s %-26.4f %.1f %%\n", mesh[i], element == TLED_ELEMENT_T4 ? "t4" : "anp", 1e3 * uy,
+             100 * (uy / 0.008325899217964183 - 1));
       if (element == TLED_ELEMENT_T4) assert_close(uy, p1[i], 1e-4, p1[i]);
       else assert_close(uy, 0.008325899217964183, bar[i], uy); /* coarse meshes; a prototype of the same form had 11.1 and 5.6 % */
       assert_petsc(TLEDDestroy(&tled));
@@ -203,17 +211,17 @@ static void AnpTangent_AnswersLikeTheElement(void **state)
   assert_petsc(TLEDGetMass(tled, &mass));
   assert_petsc(TLEDIsConstrained(tled, &held));
   assert_petsc(VecDuplicate(u, &load));
-  assert_petsc(PetscMalloc1(3*n, &rows));
+  assert_petsc(PetscMalloc1(3 * n, &rows));
   assert_petsc(VecGetArray(load, &f));
-  for (PetscInt k = 0; k < 3*n; k++) {
-    f[k] = held[k / 3] ? 0.0 : g[k % 3]*mass[k / 3];
+  for (PetscInt k = 0; k < 3 * n; k++) {
+    f[k] = held[k / 3] ? 0.0 : g[k % 3] * mass[k / 3];
     if (held[k / 3]) rows[n_held++] = k;
   }
   assert_petsc(VecRestoreArray(load, &f));
   tip = NodeAt(tled, 1.0, 0.05, 0.05);
   assert_petsc(TLEDAdvance(tled, 2.5, NULL));
   assert_petsc(TLEDGetPositions(tled, &x, NULL));
-  moved = x[3*tip + 2] - 0.05;
+  moved = x[3 * tip + 2] - 0.05;
   assert_petsc(MatZeroRowsColumns(K, n_held, rows, 1e6, NULL, NULL));
   assert_petsc(KSPCreate(PETSC_COMM_SELF, &ksp));
   assert_petsc(KSPSetType(ksp, KSPPREONLY));
@@ -222,8 +230,8 @@ static void AnpTangent_AnswersLikeTheElement(void **state)
   assert_petsc(KSPSetOperators(ksp, K, K));
   assert_petsc(KSPSolve(ksp, load, u));
   assert_petsc(TLEDGetPositions(tled, &x, NULL));
-  printf("anp tangent: tip answers %.3f of what the element does\n", (x[3*tip + 2] - 0.05) / moved);
-  assert_close(x[3*tip + 2] - 0.05, moved, 0.2, moved);
+  printf("anp tangent: tip answers %.3f of what the element does\n", (x[3 * tip + 2] - 0.05) / moved);
+  assert_close(x[3 * tip + 2] - 0.05, moved, 0.2, moved);
   assert_petsc(KSPDestroy(&ksp));
   assert_petsc(MatDestroy(&K));
   assert_petsc(VecDestroy(&load));
@@ -231,5 +239,5 @@ static void AnpTangent_AnswersLikeTheElement(void **state)
   assert_petsc(TLEDDestroy(&tled));
 }
 
-CHECK_MAIN(cmocka_unit_test(Relaxation_ReachesTheStaticState), cmocka_unit_test(Release_PeaksWhereAndWhenItShould), cmocka_unit_test(NearIncompressibility_DoesNotLockAnp),
-           cmocka_unit_test(AnpTangent_AnswersLikeTheElement))
+CHECK_MAIN(cmocka_unit_test(Relaxation_ReachesTheStaticState), cmocka_unit_test(Release_PeaksWhereAndWhenItShould),
+           cmocka_unit_test(NearIncompressibility_DoesNotLockAnp), cmocka_unit_test(AnpTangent_AnswersLikeTheElement))

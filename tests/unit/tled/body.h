@@ -1,4 +1,5 @@
-/* body.h - bodies for the tests of the solid: a mesh of tests/meshes with its parameters, and small linear algebra on raw arrays. */
+/* body.h - bodies for the tests of the solid: a mesh of tests/meshes with its parameters, and small linear algebra on raw arrays.
+ */
 #ifndef BY_TEST_BODY_H
 #define BY_TEST_BODY_H
 
@@ -23,7 +24,7 @@ static inline TLED NewBody(const char mesh[], TLEDParams **params)
 
   assert_petsc(TLEDCreate(PETSC_COMM_SELF, "body", &tled));
   assert_petsc(TLEDGetParams(tled, params));
-  snprintf((*params)->mesh, sizeof (*params)->mesh, "%s", MeshPath(mesh));
+  snprintf((*params)->mesh, sizeof(*params)->mesh, "%s", MeshPath(mesh));
   (*params)->young   = 3e6;
   (*params)->density = 1000.0;
   (*params)->poisson = 0.3;
@@ -43,7 +44,7 @@ static inline void SetVec(TLED tled, Vec vec, void (*value)(const PetscReal X[3]
   assert_petsc(TLEDGetSize(tled, &n, NULL));
   assert_petsc(TLEDGetMesh(tled, NULL, &X));
   assert_petsc(VecGetArrayWrite(vec, &v));
-  for (PetscInt a = 0; a < n; a++) value(&X[3*a], &v[3*a]);
+  for (PetscInt a = 0; a < n; a++) value(&X[3 * a], &v[3 * a]);
   assert_petsc(VecRestoreArrayWrite(vec, &v));
 }
 
@@ -56,7 +57,7 @@ static inline PetscInt NodeAt(TLED tled, double x, double y, double z)
   assert_petsc(TLEDGetSize(tled, &n, NULL));
   assert_petsc(TLEDGetMesh(tled, NULL, &X));
   for (PetscInt a = 0; a < n; a++)
-    if (fabs(X[3*a] - x) + fabs(X[3*a + 1] - y) + fabs(X[3*a + 2] - z) < 1e-9) return a;
+    if (fabs(X[3 * a] - x) + fabs(X[3 * a + 1] - y) + fabs(X[3 * a + 2] - z) < 1e-9) return a;
   fail_msg("no node at %g %g %g", x, y, z);
   return -1;
 }

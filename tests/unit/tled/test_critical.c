@@ -1,10 +1,10 @@
-/* The critical step against 2/omega_max of the assembled system by an independent code (DOLFINx 0.5.2 and SLEPc 3.18.2: lumped mass,
-   P1 elements, beam clamped at x = 0, E 3 MPa, nu 0.3, rho 1000). */
+/* The critical step against 2/omega_max of the assembled system by an independent code (DOLFINx 0.5.2 and SLEPc 3.18.2: lumped
+   mass, P1 elements, beam clamped at x = 0, E 3 MPa, nu 0.3, rho 1000). */
 #include "unit/tled/body.h"
 
 static void CriticalStep_IsTheTrueOne(void **state)
 {
-  const char  *mesh[2] = {"tests/meshes/beam_h1.msh", "tests/meshes/beam_h2.msh"};
+  const char  *mesh[2]  = {"tests/meshes/beam_h1.msh", "tests/meshes/beam_h2.msh"};
   const double exact[2] = {0.0003041771712625034, 0.00027027794779142973};
 
   (void)state;
@@ -18,7 +18,7 @@ static void CriticalStep_IsTheTrueOne(void **state)
     assert_petsc(TLEDSetUp(tled));
     assert_petsc(TLEDGetCriticalStep(tled, &dt));
     assert_close(dt, exact[i], 2e-3, exact[i]); /* the iteration ends when omega^2 grows by less than 1e-4 a step */
-    assert_petsc(TLEDGetSubsteps(tled, 10.5*0.9*dt, &n));
+    assert_petsc(TLEDGetSubsteps(tled, 10.5 * 0.9 * dt, &n));
     assert_int_equal(n, 11);
     assert_petsc(TLEDDestroy(&tled));
   }
@@ -26,9 +26,9 @@ static void CriticalStep_IsTheTrueOne(void **state)
 
 static void Stretch(const PetscReal X[3], PetscReal u[3])
 {
-  u[0] = 0.0*X[0];
-  u[1] = -0.4*(X[1] - 0.05);
-  u[2] = -0.4*(X[2] - 0.05);
+  u[0] = 0.0 * X[0];
+  u[1] = -0.4 * (X[1] - 0.05);
+  u[2] = -0.4 * (X[2] - 0.05);
 }
 
 /* the step follows the deformation: squeezed elements need a shorter one */
@@ -45,7 +45,7 @@ static void CriticalStep_FollowsTheDeformation(void **state)
   assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
   SetVec(tled, u, Stretch);
   assert_petsc(TLEDGetCriticalStep(tled, &after));
-  assert_true(after < 0.8*before);
+  assert_true(after < 0.8 * before);
   assert_petsc(TLEDDestroy(&tled));
 }
 

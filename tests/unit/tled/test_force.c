@@ -8,14 +8,14 @@ static const double *map; /* the affine map of the test, row-major F */
 
 static void Affine(const PetscReal X[3], PetscReal u[3])
 {
-  for (int i = 0; i < 3; i++) u[i] = map[3*i]*X[0] + map[3*i + 1]*X[1] + map[3*i + 2]*X[2] - X[i] + 0.3*(i + 1);
+  for (int i = 0; i < 3; i++) u[i] = map[3 * i] * X[0] + map[3 * i + 1] * X[1] + map[3 * i + 2] * X[2] - X[i] + 0.3 * (i + 1);
 }
 
 static void Wavy(const PetscReal X[3], PetscReal u[3])
 {
-  u[0] = 0.05*sin(3*X[1] + X[2]) + 0.04*X[0]*X[0];
-  u[1] = 0.06*cos(2*X[0]) - 0.05*X[1]*X[2];
-  u[2] = 0.04*sin(4*X[2] + X[0]*X[1]) + 0.03*X[2];
+  u[0] = 0.05 * sin(3 * X[1] + X[2]) + 0.04 * X[0] * X[0];
+  u[1] = 0.06 * cos(2 * X[0]) - 0.05 * X[1] * X[2];
+  u[2] = 0.04 * sin(4 * X[2] + X[0] * X[1]) + 0.03 * X[2];
 }
 
 static TLED Cube(int law, int element, TLEDParams **p)
@@ -24,7 +24,7 @@ static TLED Cube(int law, int element, TLEDParams **p)
 
   (*p)->material = law;
   (*p)->element  = element;
-  (*p)->young    = 2.0*reference_mu*1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
+  (*p)->young    = 2.0 * reference_mu * 1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
   assert_petsc(TLEDSetUp(tled));
   return tled;
 }
@@ -49,20 +49,24 @@ static void PatchTest_GivesTheUniformStress(void **state)
       assert_petsc(TLEDGetMesh(tled, NULL, &X));
       assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &n_tri, &tri));
       for (int i = 0; i < 5; i++) {
-        const PatchReference *r = &patch_reference[law][i];
-        double               *expected = calloc(3*(size_t)n, sizeof *expected);
-        map = r->F;
+        const PatchReference *r        = &patch_reference[law][i];
+        double               *expected = calloc(3 * (size_t)n, sizeof *expected);
+        map                            = r->F;
         SetVec(tled, u, Affine);
         assert_petsc(TLEDInternalForce(tled, u, force));
         for (PetscInt t = 0; t < n_tri; t++) { /* a third of P A N to each corner */
           double a[3], b[3], area[3];
-          for (int k = 0; k < 3; k++) a[k] = X[3*tri[3*t + 1] + k] - X[3*tri[3*t] + k], b[k] = X[3*tri[3*t + 2] + k] - X[3*tri[3*t] + k];
-          area[0] = 0.5*(a[1]*b[2] - a[2]*b[1]), area[1] = 0.5*(a[2]*b[0] - a[0]*b[2]), area[2] = 0.5*(a[0]*b[1] - a[1]*b[0]);
+          for (int k = 0; k < 3; k++)
+            a[k] = X[3 * tri[3 * t + 1] + k] - X[3 * tri[3 * t] + k], b[k] = X[3 * tri[3 * t + 2] + k] - X[3 * tri[3 * t] + k];
+          area[0] = 0.5 * (a[1] * b[2] - a[2] * b[1]), area[1] = 0.5 * (a[2] * b[0] - a[0] * b[2]),
+          area[2] = 0.5 * (a[0] * b[1] - a[1] * b[0]);
           for (int c = 0; c < 3; c++)
-            for (int k = 0; k < 3; k++) expected[3*tri[3*t + c] + k] += (r->P[3*k]*area[0] + r->P[3*k + 1]*area[1] + r->P[3*k + 2]*area[2]) / 3.0;
+            for (int k = 0; k < 3; k++)
+              expected[3 * tri[3 * t + c] + k] +=
+                  (r->P[3 * k] * area[0] + r->P[3 * k + 1] * area[1] + r->P[3 * k + 2] * area[2]) / 3.0;
         }
         assert_petsc(VecGetArrayRead(force, &f));
-        for (PetscInt k = 0; k < 3*n; k++) assert_close(f[k], expected[k], ROUND, 1e6);
+        for (PetscInt k = 0; k < 3 * n; k++) assert_close(f[k], expected[k], ROUND, 1e6);
         assert_petsc(VecRestoreArrayRead(force, &f));
         assert_petsc(TLEDGetStats(tled, &s));
         assert_close(s.strain, r->W, ROUND, r->W);
@@ -139,14 +143,14 @@ static void ForceAndTangent_AreDerivatives(void **state)
       assert_petsc(VecWAXPY(u, -eps, d, u0));
       assert_petsc(TLEDGetStats(tled, &s2));
       assert_petsc(TLEDInternalForce(tled, u, down));
-      slope = (s1.strain - s2.strain) / (2*eps);
+      slope = (s1.strain - s2.strain) / (2 * eps);
       assert_close(slope, work, 1e-7, work); /* round-off of the energies over the step: 1e-16 W/eps */
       if (element == TLED_ELEMENT_T4) {
         assert_petsc(TLEDTangent(tled, u0, &K));
         assert_petsc(TLEDTangent(tled, u0, &K)); /* the second call writes into the same matrix */
         assert_petsc(MatMult(K, d, Kd));
         assert_petsc(VecAXPY(up, -1.0, down));
-        assert_petsc(VecScale(up, 1.0 / (2*eps)));
+        assert_petsc(VecScale(up, 1.0 / (2 * eps)));
         assert_petsc(VecNorm(up, NORM_2, &size));
         assert_petsc(VecAXPY(up, -1.0, Kd));
         assert_petsc(VecNorm(up, NORM_2, &error));
@@ -166,4 +170,5 @@ static void ForceAndTangent_AreDerivatives(void **state)
   }
 }
 
-CHECK_MAIN(cmocka_unit_test(PatchTest_GivesTheUniformStress), cmocka_unit_test(RigidMotion_GivesNoForce), cmocka_unit_test(ForceAndTangent_AreDerivatives))
+CHECK_MAIN(cmocka_unit_test(PatchTest_GivesTheUniformStress), cmocka_unit_test(RigidMotion_GivesNoForce),
+           cmocka_unit_test(ForceAndTangent_AreDerivatives))

@@ -1,4 +1,5 @@
-/* Elastic laws and the tetrahedron, point by point: energy, stress and tangent against an independent code and against each other. */
+/* Elastic laws and the tetrahedron, point by point: energy, stress and tangent against an independent code and against each
+   other. */
 #include "check.h"
 #include "tled/tled_element.h"
 #include "unit/tled/patch_reference.h"
@@ -43,13 +44,15 @@ static void StressAndTangent_AreDerivatives(void **state)
       Stress(law, H, P);
       for (int k = 0; k < 9; k++) {
         double up[9], down[9], P_up[9], P_down[9], dF[9] = {0}, dP[9];
-        for (int j = 0; j < 9; j++) up[j] = H[j] + (j == k)*eps, down[j] = H[j] - (j == k)*eps;
+        for (int j = 0; j < 9; j++) up[j] = H[j] + (j == k) * eps, down[j] = H[j] - (j == k) * eps;
         dF[k] = 1.0;
-        assert_close((TLEDEnergy(law, up, reference_mu, reference_lambda) - TLEDEnergy(law, down, reference_mu, reference_lambda)) / (2*eps), P[k], 1e-9, 1e6);
+        assert_close((TLEDEnergy(law, up, reference_mu, reference_lambda) - TLEDEnergy(law, down, reference_mu, reference_lambda)) /
+                         (2 * eps),
+                     P[k], 1e-9, 1e6);
         Stress(law, up, P_up);
         Stress(law, down, P_down);
         TLEDStressDifferential(law, H, dF, reference_mu, reference_lambda, dP);
-        for (int j = 0; j < 9; j++) assert_close((P_up[j] - P_down[j]) / (2*eps), dP[j], 1e-8, 1e6);
+        for (int j = 0; j < 9; j++) assert_close((P_up[j] - P_down[j]) / (2 * eps), dP[j], 1e-8, 1e6);
       }
     }
   }
@@ -62,18 +65,18 @@ static void Laws_AreObjective(void **state)
 
   (void)state;
   for (int law = 0; law < 2; law++) {
-    const PatchReference *r = &patch_reference[law][0];
+    const PatchReference *r    = &patch_reference[law][0];
     double                F[9] = {0}, QP[9] = {0}, H[9], P[9], M[9] = {0};
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
-        for (int k = 0; k < 3; k++) F[3*i + j] += Q[3*i + k]*r->F[3*k + j], QP[3*i + j] += Q[3*i + k]*r->P[3*k + j];
+        for (int k = 0; k < 3; k++) F[3 * i + j] += Q[3 * i + k] * r->F[3 * k + j], QP[3 * i + j] += Q[3 * i + k] * r->P[3 * k + j];
     Gradient(F, H);
     assert_close(TLEDEnergy(law, H, reference_mu, reference_lambda), r->W, 1e-12, r->W);
     Stress(law, H, P);
     for (int k = 0; k < 9; k++) assert_close(P[k], QP[k], 1e-12, 1e6);
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
-        for (int k = 0; k < 3; k++) M[3*i + j] += F[3*i + k]*P[3*j + k];
+        for (int k = 0; k < 3; k++) M[3 * i + j] += F[3 * i + k] * P[3 * j + k];
     assert_close(M[1], M[3], 1e-12, 1e6);
     assert_close(M[2], M[6], 1e-12, 1e6);
     assert_close(M[5], M[7], 1e-12, 1e6);
@@ -89,7 +92,7 @@ static void SmallStrains_KeepTheirDigits(void **state)
   (void)state;
   for (double e = 1e-12; e < 0.3; e *= 3.7) {
     const double H[9] = {e, 0, 0, 0, e, 0, 0, 0, e};
-    assert_close(TLEDJacobianMinusOne(H), 3*e + 3*e*e + e*e*e, 4e-16, 3*e);
+    assert_close(TLEDJacobianMinusOne(H), 3 * e + 3 * e * e + e * e * e, 4e-16, 3 * e);
     assert_close(TLEDLogJacobian(e), log1p(e), 6e-16, e);
     assert_close(TLEDLogJacobian(-e), log1p(-e), 6e-16, e);
   }
@@ -112,19 +115,20 @@ static void Stiffness_IsTheDerivativeOfForces(void **state)
     TLEDStiffness(law, H, G, V0, reference_mu, reference_lambda, reference_lambda, K);
     for (int b = 0; b < 12; b++) {
       double g[3], dF[9], dP[9], f[9], sum = 0.0;
-      for (int j = 0; j < 3; j++) g[j] = b < 3 ? -(G[j] + G[3 + j] + G[6 + j]) : G[3*(b / 3 - 1) + j];
+      for (int j = 0; j < 3; j++) g[j] = b < 3 ? -(G[j] + G[3 + j] + G[6 + j]) : G[3 * (b / 3 - 1) + j];
       for (int k = 0; k < 9; k++) dF[k] = k / 3 == b % 3 ? g[k % 3] : 0.0;
       TLEDStressDifferential(law, H, dF, reference_mu, reference_lambda, dP);
       TLEDNodalForces(dP, G, V0, f);
-      for (int r = 3; r < 12; r++) assert_close(K[12*r + b], f[r - 3], 1e-13, 1e6);
+      for (int r = 3; r < 12; r++) assert_close(K[12 * r + b], f[r - 3], 1e-13, 1e6);
       for (int r = 0; r < 12; r++) {
-        assert_close(K[12*r + b], K[12*b + r], 1e-13, 1e6);
-        sum += r % 3 == 0 ? K[12*r + b] : 0.0;
+        assert_close(K[12 * r + b], K[12 * b + r], 1e-13, 1e6);
+        sum += r % 3 == 0 ? K[12 * r + b] : 0.0;
       }
       assert_close(sum, 0.0, 1e-13, 1e6);
     }
   }
 }
 
-CHECK_MAIN(cmocka_unit_test(EnergyAndStress_AreTheReference), cmocka_unit_test(StressAndTangent_AreDerivatives), cmocka_unit_test(Laws_AreObjective),
-           cmocka_unit_test(SmallStrains_KeepTheirDigits), cmocka_unit_test(Stiffness_IsTheDerivativeOfForces))
+CHECK_MAIN(cmocka_unit_test(EnergyAndStress_AreTheReference), cmocka_unit_test(StressAndTangent_AreDerivatives),
+           cmocka_unit_test(Laws_AreObjective), cmocka_unit_test(SmallStrains_KeepTheirDigits),
+           cmocka_unit_test(Stiffness_IsTheDerivativeOfForces))

@@ -1,16 +1,18 @@
-/* Reading gmsh files: what is read is what is in the file, and every way a mesh can be wrong is told with file, group and element. */
+/* Reading gmsh files: what is read is what is in the file, and every way a mesh can be wrong is told with file, group and
+   element. */
 #include "unit/tled/body.h"
 #include <unistd.h>
 
-/* a cube cut into six tetrahedra; `swap` exchanges two corners of element 12, `groups` writes the names of groups */
+/* a cube cut into six tetrahedra; `swap` 1 exchanges two corners of element 12, 2 of all; `flat` pulls node 6 to the floor */
 static void WriteCube(const char path[], int version, int swap, int flat, const char extra[])
 {
-  static const int tets[6][4] = {{1, 2, 3, 7}, {1, 3, 4, 7}, {1, 4, 8, 7}, {1, 8, 5, 7}, {1, 5, 6, 7}, {1, 6, 2, 7}};
+  static const int tets[6][4]   = {{1, 2, 3, 7}, {1, 3, 4, 7}, {1, 4, 8, 7}, {1, 8, 5, 7}, {1, 5, 6, 7}, {1, 6, 2, 7}};
   static const int bottom[2][3] = {{1, 3, 2}, {1, 4, 3}};
-  FILE            *f = fopen(path, "w");
+  FILE            *f            = fopen(path, "w");
 
   assert_non_null(f);
-  fprintf(f, "$MeshFormat\n%s 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 7 \"floor\"\n3 9 \"solid\"\n$EndPhysicalNames\n", version == 22 ? "2.2" : "4.1");
+  fprintf(f, "$MeshFormat\n%s 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 7 \"floor\"\n3 9 \"solid\"\n$EndPhysicalNames\n",
+          version == 22 ? "2.2" : "4.1");
   if (version == 41) fprintf(f, "$Entities\n0 0 1 1\n1 0 0 0 1 1 0 1 7 0\n1 0 0 0 1 1 1 1 9 1 1\n$EndEntities\n");
   fprintf(f, version == 22 ? "$Nodes\n8\n" : "$Nodes\n1 8 1 8\n3 1 0 8\n");
   for (int a = 1; a <= 8 && version == 41; a++) fprintf(f, "%d\n", a);
@@ -20,11 +22,13 @@ static void WriteCube(const char path[], int version, int swap, int flat, const 
     fprintf(f, "%d %d %g\n", b == 1 || b == 2, b > 1, flat && a == 5 ? 0.0 : a > 3 ? 1.0 : 0.0);
   }
   fprintf(f, "$EndNodes\n$Elements\n%s", version == 22 ? "8\n" : "2 8 1 16\n2 1 2 2\n");
-  for (int t = 0; t < 2; t++) fprintf(f, version == 22 ? "%d 2 2 7 1 %d %d %d\n" : "%d %d %d %d\n", t + 1, bottom[t][0], bottom[t][1], bottom[t][2]);
+  for (int t = 0; t < 2; t++)
+    fprintf(f, version == 22 ? "%d 2 2 7 1 %d %d %d\n" : "%d %d %d %d\n", t + 1, bottom[t][0], bottom[t][1], bottom[t][2]);
   if (version == 41) fprintf(f, "3 1 4 6\n");
   for (int t = 0; t < 6; t++) {
     const int s = swap && (t == 2 || swap == 2);
-    fprintf(f, version == 22 ? "%d 4 2 9 1 %d %d %d %d\n" : "%d %d %d %d %d\n", t + 10, tets[t][s], tets[t][!s], tets[t][2], tets[t][3]);
+    fprintf(f, version == 22 ? "%d 4 2 9 1 %d %d %d %d\n" : "%d %d %d %d %d\n", t + 10, tets[t][s], tets[t][!s], tets[t][2],
+            tets[t][3]);
   }
   fprintf(f, "$EndElements\n%s", extra ? extra : "");
   assert_int_equal(fclose(f), 0);
@@ -40,7 +44,7 @@ static char *Path(const char name[])
 static TLED Body(const char path[], TLEDParams **p)
 {
   TLED tled = NewBody("", p);
-  snprintf((*p)->mesh, sizeof (*p)->mesh, "%s", path);
+  snprintf((*p)->mesh, sizeof(*p)->mesh, "%s", path);
   return tled;
 }
 
@@ -95,25 +99,27 @@ static void Cube_IsReadAsWritten(void **state)
     assert_petsc(TLEDGetMass(tled, &mass));
     for (PetscInt a = 0; a < 8; a++) {
       total += mass[a];
-      assert_true(X[3*a] == 10.0 || X[3*a] == 12.0);
+      assert_true(X[3 * a] == 10.0 || X[3 * a] == 12.0);
     }
     assert_close(total, 8000.0, 1e-14, 8000.0);
     assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &all, &tri));
     assert_int_equal(all, 12);
     for (PetscInt t = 0; t < 12; t++) { /* outward: the area vectors add to zero, and sum x . A is three volumes */
       double a[3], b[3], area[3];
-      for (int k = 0; k < 3; k++) a[k] = X[3*tri[3*t + 1] + k] - X[3*tri[3*t] + k], b[k] = X[3*tri[3*t + 2] + k] - X[3*tri[3*t] + k];
-      area[0] = 0.5*(a[1]*b[2] - a[2]*b[1]), area[1] = 0.5*(a[2]*b[0] - a[0]*b[2]), area[2] = 0.5*(a[0]*b[1] - a[1]*b[0]);
-      for (int k = 0; k < 3; k++) out[k] += area[k], flux += X[3*tri[3*t] + k]*area[k];
+      for (int k = 0; k < 3; k++)
+        a[k] = X[3 * tri[3 * t + 1] + k] - X[3 * tri[3 * t] + k], b[k] = X[3 * tri[3 * t + 2] + k] - X[3 * tri[3 * t] + k];
+      area[0] = 0.5 * (a[1] * b[2] - a[2] * b[1]), area[1] = 0.5 * (a[2] * b[0] - a[0] * b[2]),
+      area[2] = 0.5 * (a[0] * b[1] - a[1] * b[0]);
+      for (int k = 0; k < 3; k++) out[k] += area[k], flux += X[3 * tri[3 * t] + k] * area[k];
     }
     for (int k = 0; k < 3; k++) assert_close(out[k], 0.0, 1e-14, 4.0);
     assert_close(flux, 24.0, 1e-13, 24.0);
     assert_petsc(TLEDGetSurface(tled, PETSC_TRUE, &n, &tri));
     assert_int_equal(n, 2);
-    for (PetscInt k = 0; k < 6; k++) assert_true(X[3*tri[k] + 2] == 0.0);
+    for (PetscInt k = 0; k < 6; k++) assert_true(X[3 * tri[k] + 2] == 0.0);
     assert_petsc(TLEDGetGroup(tled, "floor", &n, &nodes));
     assert_int_equal(n, 4);
-    for (PetscInt k = 0; k < 4; k++) assert_true(X[3*nodes[k] + 2] == 0.0);
+    for (PetscInt k = 0; k < 4; k++) assert_true(X[3 * nodes[k] + 2] == 0.0);
     assert_petsc(TLEDGetGroup(tled, "solid", &n, NULL));
     assert_int_equal(n, 8);
     unlink(path);
@@ -173,15 +179,16 @@ static void WrongKinds_AreRefused(void **state)
 {
   TLEDParams *p;
   char       *path = Path("kind.msh");
-  FILE       *f = fopen(path, "w");
+  FILE       *f    = fopen(path, "w");
 
   (void)state;
-  fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n");
+  fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 "
+             "3\n$EndElements\n");
   fclose(f);
   REFUSED(Body(path, &p), "is a mesh of the wrong kind", "no tetrahedra, 1 triangles", "solid_from_surface.py");
   f = fopen(path, "w");
   fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n");
-  for (int a = 1; a <= 10; a++) fprintf(f, "%d %d %d %d\n", a, a, a*a, a*a*a);
+  for (int a = 1; a <= 10; a++) fprintf(f, "%d %d %d %d\n", a, a, a * a, a * a * a);
   fprintf(f, "$EndNodes\n$Elements\n1\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
   fclose(f);
   REFUSED(Body(path, &p), "second-order (10-node) tetrahedron", "expected a mesh of first-order");
@@ -233,9 +240,14 @@ static void MissingGroup_IsNamedWithTheNearest(void **state)
 /* the shipped meshes: size, groups, volume, and no sliver that would shorten the time step */
 static void ShippedMeshes_AreGood(void **state)
 {
-  static const struct { const char *mesh, *held; int n_min, n_max; double volume; } meshes[] = {
-    {"meshes/flap.msh", "root", 2700, 3400, 0.024*0.2*0.2}, {"meshes/plate.msh", "root", 2000, 2700, 0.03*0.12*0.16},
-    {"meshes/beam.msh", "clamp", 1500, 2200, 0.01}, {"meshes/ball.msh", NULL, 2250, 2750, 4.0/3*3.14159265*0.08*0.08*0.08}};
+  static const struct {
+    const char *mesh, *held;
+    int         n_min, n_max;
+    double      volume;
+  } meshes[] = {{"meshes/flap.msh", "root", 2700, 3400, 0.024 * 0.2 * 0.2},
+                {"meshes/plate.msh", "root", 2000, 2700, 0.03 * 0.12 * 0.16},
+                {"meshes/beam.msh", "clamp", 1500, 2200, 0.01},
+                {"meshes/ball.msh", NULL, 2250, 2750, 4.0 / 3 * 3.14159265 * 0.08 * 0.08 * 0.08}};
 
   (void)state;
   for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
@@ -254,14 +266,15 @@ static void ShippedMeshes_AreGood(void **state)
     assert_close(s.volume, meshes[i].volume, meshes[i].held ? 1e-12 : 0.02, meshes[i].volume); /* facets cut off a ball */
     assert_petsc(TLEDGetSurface(tled, PETSC_TRUE, &n, NULL));
     assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &all, NULL));
-    assert_true(meshes[i].held ? n < all && n > 0.8*all : n == all);
+    assert_true(meshes[i].held ? n < all && n > 0.8 * all : n == all);
     assert_petsc(TLEDGetCriticalStep(tled, &dt));
     /* against the time a pressure wave takes through an element of the mean volume: slivers would push it down */
-    assert_true(dt > 0.4*pow(12.0*s.volume / n_tets, 1.0/3.0) / sqrt(3e6*0.7 / (1.3*0.4) / 1000.0));
+    assert_true(dt > 0.4 * pow(12.0 * s.volume / n_tets, 1.0 / 3.0) / sqrt(3e6 * 0.7 / (1.3 * 0.4) / 1000.0));
     assert_petsc(TLEDDestroy(&tled));
   }
 }
 
-CHECK_MAIN(cmocka_unit_test(Cube_IsReadAsWritten), cmocka_unit_test(MissingAndForeignFiles_AreRefused), cmocka_unit_test(TruncatedFile_IsRefused),
-           cmocka_unit_test(WrongKinds_AreRefused), cmocka_unit_test(InvertedElement_IsNamed), cmocka_unit_test(MissingGroup_IsNamedWithTheNearest),
+CHECK_MAIN(cmocka_unit_test(Cube_IsReadAsWritten), cmocka_unit_test(MissingAndForeignFiles_AreRefused),
+           cmocka_unit_test(TruncatedFile_IsRefused), cmocka_unit_test(WrongKinds_AreRefused),
+           cmocka_unit_test(InvertedElement_IsNamed), cmocka_unit_test(MissingGroup_IsNamedWithTheNearest),
            cmocka_unit_test(ShippedMeshes_AreGood))

@@ -6,9 +6,9 @@
 
 static void Spin(const PetscReal X[3], PetscReal v[3]) /* a rotation about z and a stretch: the body turns and vibrates */
 {
-  v[0] = -20.0*(X[1] - 0.05) + 5.0*X[0];
-  v[1] = 20.0*(X[0] - 0.4);
-  v[2] = 3.0*X[2] - 1.0;
+  v[0] = -20.0 * (X[1] - 0.05) + 5.0 * X[0];
+  v[1] = 20.0 * (X[0] - 0.4);
+  v[2] = 3.0 * X[2] - 1.0;
 }
 
 static TLED FreeBody(int element, TLEDParams **p)
@@ -40,8 +40,8 @@ static void FreeFall_IsExact(void **state)
   for (PetscInt a = 0; a < n; a++) {
     for (int k = 0; k < 3; k++) {
       const double v0 = k == 1 ? 2.0 : 0.0;
-      assert_close(x[3*a + k] - X[3*a + k], v0*0.08 + 0.5*g[k]*0.0064, ROUND, 1.0);
-      assert_close(v[3*a + k], v0 + g[k]*0.08, ROUND, 2.0);
+      assert_close(x[3 * a + k] - X[3 * a + k], v0 * 0.08 + 0.5 * g[k] * 0.0064, ROUND, 1.0);
+      assert_close(v[3 * a + k], v0 + g[k] * 0.08, ROUND, 2.0);
     }
   }
   assert_petsc(TLEDDestroy(&tled));
@@ -69,7 +69,7 @@ static void FreeBody_KeepsMomentaAndEnergy(void **state)
       assert_close(s.momentum[k], s0.momentum[k], ROUND, 200.0);
       assert_close(s.angular[k], s0.angular[k], ROUND, 50.0);
     }
-    assert_true(s.strain > 0.05*e0);
+    assert_true(s.strain > 0.05 * e0);
     assert_close(s.kinetic + s.strain, e0, 5e-3, e0); /* steps at 0.9 of the critical one: the highest modes' energy wavers */
     assert_petsc(TLEDDestroy(&tled));
   }
@@ -110,7 +110,7 @@ static void Energies_Balance(void **state)
     double      balance, size;
 
     AddName(&p->fixed, "clamp");
-    p->safety = 0.2;
+    p->safety      = 0.2;
     p->velocity[0] = 2.0, p->velocity[2] = 1.0;
     if (kind == 1) p->damping = 20.0;
     if (kind == 2) p->stiffness_damping = 1e-3;
@@ -127,8 +127,8 @@ static void Energies_Balance(void **state)
     assert_petsc(TLEDAdvance(tled, 0.05, NULL));
     assert_petsc(TLEDGetStats(tled, &s));
     balance += s.kinetic + s.strain + s.gravity_potential + s.damping_loss - s.external_work;
-    if (kind == 1 || kind == 2) assert_true(s.damping_loss > 0.01*size);
-    if (kind != 2) assert_true(fabs(s.external_work) > 0.1*size);
+    if (kind == 1 || kind == 2) assert_true(s.damping_loss > 0.01 * size);
+    if (kind != 2) assert_true(fabs(s.external_work) > 0.1 * size);
     assert_close(balance, 0.0, 2e-3, size); /* (omega dt)^2/12 of the modes that are excited */
     assert_petsc(TLEDDestroy(&tled));
   }
@@ -159,23 +159,23 @@ static void SaveAndRestore_AreExact(void **state)
   assert_petsc(VecCopy(v, v2));
   assert_petsc(VecCopy(f, f2));
   assert_petsc(TLEDGetState(tled, &n_carried, NULL));
-  assert_petsc(PetscMalloc2(3*n, &first, n_carried, &carried));
+  assert_petsc(PetscMalloc2(3 * n, &first, n_carried, &carried));
   assert_petsc(TLEDGetState(tled, &n_carried, carried));
   assert_petsc(TLEDSetState(other, n_carried, carried));
   assert_petsc(TLEDAdvance(tled, 0.03, &n1));
   assert_petsc(TLEDGetPositions(tled, &x, NULL));
-  assert_petsc(PetscArraycpy(first, x, 3*n));
+  assert_petsc(PetscArraycpy(first, x, 3 * n));
   assert_petsc(TLEDRestore(tled));
   assert_petsc(TLEDGetTime(tled, &t));
   assert_close(t, 0.02, 1e-15, 1.0);
   assert_petsc(TLEDAdvance(tled, 0.03, &n2));
   assert_petsc(TLEDGetPositions(tled, &x, NULL));
   assert_int_equal(n1, n2);
-  assert_memory_equal(x, first, 3*n*sizeof *x);
+  assert_memory_equal(x, first, 3 * n * sizeof *x);
   assert_petsc(TLEDAdvance(other, 0.03, &n2));
   assert_petsc(TLEDGetPositions(other, &x, NULL));
   assert_int_equal(n1, n2);
-  assert_memory_equal(x, first, 3*n*sizeof *x);
+  assert_memory_equal(x, first, 3 * n * sizeof *x);
   assert_petsc(PetscFree2(first, carried));
   assert_petsc(TLEDDestroy(&tled));
   assert_petsc(TLEDDestroy(&other));
@@ -208,11 +208,11 @@ static void Threads_GiveTheSameBits(void **state)
       assert_petsc(TLEDGetPositions(tled, &x, NULL));
       assert_petsc(TLEDGetStats(tled, &s));
       if (n_threads == 1) {
-        assert_petsc(PetscMalloc1(3*n, &first));
-        assert_petsc(PetscArraycpy(first, x, 3*n));
+        assert_petsc(PetscMalloc1(3 * n, &first));
+        assert_petsc(PetscArraycpy(first, x, 3 * n));
         s1 = s;
       }
-      assert_memory_equal(x, first, 3*n*sizeof *x);
+      assert_memory_equal(x, first, 3 * n * sizeof *x);
       assert_memory_equal(&s, &s1, sizeof s);
       assert_petsc(TLEDDestroy(&tled));
     }
@@ -248,12 +248,12 @@ static void Constraints_Hold(void **state)
   assert_true(n_clamp > 3 && n_tip > 3);
   for (PetscInt i = 0; i < n_clamp; i++) {
     const PetscInt a = clamp[i];
-    assert_true(held[a] && X[3*a] == 0.0);
-    for (int k = 0; k < 3; k++) assert_true(x[3*a + k] == X[3*a + k] && v[3*a + k] == 0.0);
+    assert_true(held[a] && X[3 * a] == 0.0);
+    for (int k = 0; k < 3; k++) assert_true(x[3 * a + k] == X[3 * a + k] && v[3 * a + k] == 0.0);
   }
   for (PetscInt i = 0; i < n_tip; i++) {
     assert_true(held[tip[i]]);
-    assert_close(x[3*tip[i] + 2], X[3*tip[i] + 2] - 0.03, ROUND, 1.0);
+    assert_close(x[3 * tip[i] + 2], X[3 * tip[i] + 2] - 0.03, ROUND, 1.0);
   }
   assert_petsc(TLEDGetSize(tled, &n, NULL));
   for (PetscInt a = 0; a < n; a++) n_held += held[a];
@@ -266,10 +266,10 @@ static void Constraints_Hold(void **state)
 /* an element that is turned inside out ends the run with its number, place and time */
 static void Breakdown_IsReported(void **state)
 {
-  TLEDParams     *p;
-  TLED            tled = FreeBody(TLED_ELEMENT_T4, &p);
-  const char     *message;
-  PetscErrorCode  ierr;
+  TLEDParams    *p;
+  TLED           tled = FreeBody(TLED_ELEMENT_T4, &p);
+  const char    *message;
+  PetscErrorCode ierr;
 
   (void)state;
   AddName(&p->fixed, "clamp");
@@ -287,6 +287,7 @@ static void Breakdown_IsReported(void **state)
   assert_petsc(TLEDDestroy(&tled));
 }
 
-CHECK_MAIN(cmocka_unit_test(FreeFall_IsExact), cmocka_unit_test(FreeBody_KeepsMomentaAndEnergy), cmocka_unit_test(AngularImpulse_IsTheGain),
-           cmocka_unit_test(Energies_Balance), cmocka_unit_test(SaveAndRestore_AreExact), cmocka_unit_test(Threads_GiveTheSameBits),
-           cmocka_unit_test(Constraints_Hold), cmocka_unit_test(Breakdown_IsReported))
+CHECK_MAIN(cmocka_unit_test(FreeFall_IsExact), cmocka_unit_test(FreeBody_KeepsMomentaAndEnergy),
+           cmocka_unit_test(AngularImpulse_IsTheGain), cmocka_unit_test(Energies_Balance),
+           cmocka_unit_test(SaveAndRestore_AreExact), cmocka_unit_test(Threads_GiveTheSameBits), cmocka_unit_test(Constraints_Hold),
+           cmocka_unit_test(Breakdown_IsReported))
