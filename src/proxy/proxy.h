@@ -8,6 +8,7 @@
 typedef struct _p_Proxy *Proxy;
 
 typedef enum { PROXY_KERNEL_HALF_SPACE, PROXY_KERNEL_ELLIPSOID } ProxyKernel;
+typedef enum { PROXY_MEASURE_GAUSSIAN, PROXY_MEASURE_PRINCIPAL } ProxyMeasure;
 typedef enum { PROXY_RANGE_ROBUST, PROXY_RANGE_MINMAX } ProxyRange;
 
 /* Parameters of `<body>.proxy:` and `<obstacle>.proxy:`; ProxyKeys[] (proxy_keys.c) declares each. */
@@ -19,7 +20,8 @@ typedef struct {
   PetscReal resample_tolerance;  /* edge or area ratio change that triggers resampling; 0 = every step       */
   PetscReal feature_angle;       /* [degree] dihedral beyond which an edge is sharp                          */
   int       kernel;              /* ProxyKernel                                                              */
-  int       range;               /* ProxyRange                                                               */
+  int       measure;             /* ProxyMeasure                                                             */
+  int       range;               /* ProxyRange, of the Gaussian measure                                      */
 } ProxyParams;
 
 BY_EXTERN const Key ProxyKeys[];

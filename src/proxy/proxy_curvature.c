@@ -171,38 +171,95 @@ static PetscReal Normalized(const ProxyParams *params, PetscReal lo, PetscReal h
   return params->eta_min + (params->eta_max - params->eta_min)*part;
 }
 
-/* kappa-bar in [eta_min, eta_max] of nodes, edges (0.6 A + 0.4 B) and triangles (0.5 A + 0.3 B + 0.2 C, |kappa| sorted), method 4.1;
-   1 everywhere when the sampling is uniform */
-PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *s, const ProxyParams *params, PetscReal h, const PetscReal kappa[],
-                                        const PetscReal area[], PetscReal node[], PetscReal edge[], PetscReal triangle[])
+/* Gaussian measure (method 4.1): edges 0.6 A + 0.4 B, triangles 0.5 A + 0.3 B + 0.2 C with |kappa| sorted */
+static PetscErrorCode GaussianMeasure(const ProxySurface *s, const PetscReal x[], const ProxyParams *params, PetscReal h, PetscReal node[],
+                                      PetscReal edge[], PetscReal triangle[])
 {
-  PetscReal *sorted, lo = 0.0, hi = 0.0;
+  PetscReal *kappa, *area, *sorted, lo = 0.0, hi = 0.0;
   PetscInt   n = 0;
 
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(s->n_nodes, &kappa, s->n_nodes, &area, s->n_nodes, &sorted));
+  PetscCall(ProxyGaussianCurvature(s, x, kappa, area));
+  for (PetscInt v = 0; v < s->n_nodes; v++) {
+    kappa[v] = PetscAbsReal(kappa[v]);
+    if (area[v] > 0.0) sorted[n++] = kappa[v];
+  }
+  PetscCall(CurvatureRange(params, h, n, sorted, &lo, &hi));
+  for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = Normalized(params, lo, hi, kappa[v]);
+  for (PetscInt e = 0; e < s->n_edges; e++) {
+    const PetscReal a = kappa[s->edge_nodes[2*e]], b = kappa[s->edge_nodes[2*e + 1]];
+    edge[e] = Normalized(params, lo, hi, 0.6*PetscMax(a, b) + 0.4*PetscMin(a, b));
+  }
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    const PetscInt *v = &s->triangles[3*t];
+    const PetscReal a = kappa[v[0]], b = kappa[v[1]], c = kappa[v[2]];
+    const PetscReal top = PetscMax(a, PetscMax(b, c)), low = PetscMin(a, PetscMin(b, c));
+    triangle[t] = Normalized(params, lo, hi, 0.5*top + 0.3*(a + b + c - top - low) + 0.2*low);
+  }
+  PetscCall(PetscFree3(kappa, area, sorted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Principal measure: kappa-bar = |kappa|_max h, so that a support's radius h/kappa-bar stays within the radius of curvature, also on the
+   ridges and cylinders that Gaussian curvature does not see. Shape operators are noise below the kernel's scale: |S| is averaged over
+   neighbours as often as a random walk of that many edges takes to go h/2. */
+static PetscErrorCode PrincipalMeasure(const ProxySurface *s, const ProxyGeometry *g, const ProxyParams *params, PetscReal h, PetscReal node[],
+                                       PetscReal edge[], PetscReal triangle[])
+{
+  PetscReal *next, *weight, length = 0.0;
+  PetscInt   passes;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(s->n_triangles, &next, s->n_nodes, &weight));
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    const double *S = &g->shape[6*t];
+    const double  mean = 0.5*(S[0] + S[1] + S[2]), square = S[0]*S[0] + S[1]*S[1] + S[2]*S[2] + 2.0*(S[3]*S[3] + S[4]*S[4] + S[5]*S[5]);
+    triangle[t] = fabs(mean) + sqrt(PetscMax(0.0, 0.5*square - mean*mean));
+    length += sqrt(2.0*g->area[t])/s->n_triangles;
+  }
+  passes = (PetscInt)PetscMin(20.0, 0.25*h*h/(length*length));
+  for (PetscInt pass = 0; pass < passes; pass++) {
+    for (PetscInt t = 0; t < s->n_triangles; t++) {
+      PetscReal sum = g->area[t]*triangle[t], area = g->area[t];
+      for (int i = 0; i < 3; i++) {
+        const PetscInt e = s->triangle_edges[3*t + i], o = s->edge_triangles[2*e] == t ? s->edge_triangles[2*e + 1] : s->edge_triangles[2*e];
+        if (s->edge_sharp[e]) continue;
+        sum += g->area[o]*triangle[o];
+        area += g->area[o];
+      }
+      next[t] = sum/area;
+    }
+    PetscCall(PetscArraycpy(triangle, next, s->n_triangles));
+  }
+  PetscCall(PetscArrayzero(weight, s->n_nodes));
+  PetscCall(PetscArrayzero(node, s->n_nodes));
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    triangle[t] = PetscMin(params->eta_max, PetscMax(params->eta_min, triangle[t]*h));
+    for (int i = 0; i < 3; i++) {
+      node[s->triangles[3*t + i]] += g->area[t]*triangle[t];
+      weight[s->triangles[3*t + i]] += g->area[t];
+    }
+  }
+  for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = weight[v] > 0.0 ? node[v]/weight[v] : params->eta_min;
+  for (PetscInt e = 0; e < s->n_edges; e++) edge[e] = 0.5*(node[s->edge_nodes[2*e]] + node[s->edge_nodes[2*e + 1]]);
+  PetscCall(PetscFree2(next, weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* kappa-bar in [eta_min, eta_max] of nodes, edges and triangles; 1 everywhere when the sampling is uniform */
+PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *s, const ProxyGeometry *g, const ProxyParams *params, PetscReal h,
+                                        PetscReal node[], PetscReal edge[], PetscReal triangle[])
+{
   PetscFunctionBegin;
   if (!params->adaptive) {
     for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = 1.0;
     for (PetscInt e = 0; e < s->n_edges; e++) edge[e] = 1.0;
     for (PetscInt t = 0; t < s->n_triangles; t++) triangle[t] = 1.0;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscMalloc1(s->n_nodes, &sorted));
-  for (PetscInt v = 0; v < s->n_nodes; v++) {
-    if (area[v] > 0.0) sorted[n++] = PetscAbsReal(kappa[v]);
-  }
-  PetscCall(CurvatureRange(params, h, n, sorted, &lo, &hi));
-  PetscCall(PetscFree(sorted));
-
-  for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = Normalized(params, lo, hi, PetscAbsReal(kappa[v]));
-  for (PetscInt e = 0; e < s->n_edges; e++) {
-    const PetscReal a = PetscAbsReal(kappa[s->edge_nodes[2*e]]), b = PetscAbsReal(kappa[s->edge_nodes[2*e + 1]]);
-    edge[e] = Normalized(params, lo, hi, 0.6*PetscMax(a, b) + 0.4*PetscMin(a, b));
-  }
-  for (PetscInt t = 0; t < s->n_triangles; t++) {
-    const PetscInt *v = &s->triangles[3*t];
-    const PetscReal a = PetscAbsReal(kappa[v[0]]), b = PetscAbsReal(kappa[v[1]]), c = PetscAbsReal(kappa[v[2]]);
-    const PetscReal top = PetscMax(a, PetscMax(b, c)), low = PetscMin(a, PetscMin(b, c));
-    triangle[t] = Normalized(params, lo, hi, 0.5*top + 0.3*(a + b + c - top - low) + 0.2*low);
+  } else if (params->measure == PROXY_MEASURE_PRINCIPAL) {
+    PetscCall(PrincipalMeasure(s, g, params, h, node, edge, triangle));
+  } else {
+    PetscCall(GaussianMeasure(s, g->x, params, h, node, edge, triangle));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -109,9 +109,9 @@ PetscErrorCode ProxyGeometryDestroy(ProxyGeometry *geometry);
 void           ProxyGeometryUpdate(const ProxySurface *surface, PetscReal max_curvature, ProxyGeometry *geometry);
 /* Gaussian curvature and mixed area by node; nodes outside the surface get 0 */
 PetscErrorCode ProxyGaussianCurvature(const ProxySurface *surface, const PetscReal x[], PetscReal kappa[], PetscReal area[]);
-/* kappa-bar by node, edge, triangle */
-PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *surface, const ProxyParams *params, PetscReal h, const PetscReal kappa[],
-                                        const PetscReal area[], PetscReal node[], PetscReal edge[], PetscReal triangle[]);
+/* kappa-bar by node, edge, triangle of the surface as it is in `geometry` */
+PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyParams *params, PetscReal h,
+                                        PetscReal node[], PetscReal edge[], PetscReal triangle[]);
 void           ProxyShapeBound(PetscReal max_curvature, double S[6]);
 
 /* proxy_sample.c */

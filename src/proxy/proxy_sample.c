@@ -368,15 +368,14 @@ PetscErrorCode ProxySample(const ProxySurface *s, const ProxyGeometry *g, const 
                            ProxySampling *sampling)
 {
   Candidates list = {0, 0, NULL};
-  PetscReal *kappa, *area, *node, *edge, *triangle;
+  PetscReal *node, *edge, *triangle;
   Part      *parts;
   PetscInt   n_parts;
 
   PetscFunctionBegin;
   PetscCall(ProxySamplingDestroy(sampling));
-  PetscCall(PetscMalloc5(s->n_nodes, &kappa, s->n_nodes, &area, s->n_nodes, &node, s->n_edges, &edge, s->n_triangles, &triangle));
-  PetscCall(ProxyGaussianCurvature(s, g->x, kappa, area));
-  PetscCall(ProxyNormalizedCurvature(s, params, fluid->h, kappa, area, node, edge, triangle));
+  PetscCall(PetscMalloc3(s->n_nodes, &node, s->n_edges, &edge, s->n_triangles, &triangle));
+  PetscCall(ProxyNormalizedCurvature(s, g, params, fluid->h, node, edge, triangle));
   PetscCall(AddVerticesAndEdges(s, g->x, fluid->h, node, edge, &list));
   PetscCall(AddInteriors(s, g, fluid->h, triangle, &list));
   PetscCall(Thin(s, g, fluid->h, &list));
@@ -384,7 +383,7 @@ PetscErrorCode ProxySample(const ProxySurface *s, const ProxyGeometry *g, const 
   PetscCall(Store(s, g, &list, n_parts, parts, sampling));
   PetscCall(PetscFree(parts));
   PetscCall(PetscFree(list.c));
-  PetscCall(PetscFree5(kappa, area, node, edge, triangle));
+  PetscCall(PetscFree3(node, edge, triangle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
