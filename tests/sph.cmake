@@ -10,3 +10,6 @@ byssus_test(unit/sph/test_viscosity base sph)
 # the device's loops against the CPU's; 77 = no device here
 byssus_test(backend/test_sph_cuda base sph)
 set_tests_properties(backend.sph_cuda PROPERTIES LABELS "backend;cuda" SKIP_RETURN_CODE 77)
+
+# a minute: still water against rho g z; prints the table of docs/verification/fluid-slice.md
+byssus_test(convergence/test_still_water base sph)

@@ -8,6 +8,7 @@ typedef struct _p_SPH *SPH;
 
 typedef enum { SPH_SOLVER_PCG, SPH_SOLVER_JACOBI } SPHSolver;
 typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2 } SPHKernelType;
+typedef enum { SPH_VISCOUS_MORRIS, SPH_VISCOUS_MONAGHAN } SPHViscousForm;
 typedef enum { SPH_PRECISION_SINGLE, SPH_PRECISION_DOUBLE } SPHPrecision;
 
 /* Parameters of the section `sph:`; SPHKeys[] (sph_keys.c) declares each with unit, default and range. */
@@ -28,6 +29,7 @@ typedef struct {
   PetscBool free_surface;     /* clamp p >= 0                                                            */
   int       solver;           /* SPHSolver                                                               */
   int       kernel;           /* SPHKernelType                                                           */
+  int       viscous_form;     /* SPHViscousForm                                                          */
   int       precision;        /* SPHPrecision of the pair loops; positions and velocities are kept in double */
   Names     fill;             /* names of blocks sph.<name>: read by the coupler's scene builder         */
 } SPHParams;

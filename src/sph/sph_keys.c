@@ -3,6 +3,7 @@
 
 static const char *const Solvers[]    = {"pcg", "jacobi", NULL};
 static const char *const Kernels[]    = {"cubic_spline", "wendland_c2", NULL};
+static const char *const Viscous[]    = {"morris", "monaghan", NULL};
 static const char *const Precisions[] = {"single", "double", NULL};
 
 #define FIELD(f) offsetof(SPHParams, f)
@@ -25,6 +26,7 @@ const Key SPHKeys[] = {
   {"free_surface", KEY_BOOL, FIELD(free_surface), "", "true", 0, 0, 0, NULL, "no negative pressure; false for a domain full of fluid"},
   {"solver", KEY_CHOICE, FIELD(solver), "", "pcg", 0, 0, 0, Solvers, "pressure solver: projected conjugate gradients, or relaxed Jacobi"},
   {"kernel", KEY_CHOICE, FIELD(kernel), "", "cubic_spline", 0, 0, 0, Kernels, "smoothing kernel"},
+  {"viscous_form", KEY_CHOICE, FIELD(viscous_form), "", "morris", 0, 0, 0, Viscous, "form of viscosity: morris is the more accurate at walls, monaghan keeps angular momentum"},
   {"precision", KEY_CHOICE, FIELD(precision), "", "single", 0, 0, 0, Precisions, "of the pair loops; positions and velocities are kept in double"},
   {"fill", KEY_NAMES, FIELD(fill), "", "", 0, 0, 0, NULL, "names of the blocks of fluid, each a section sph.<name>"},
   KEY_END};

@@ -44,7 +44,7 @@ typedef struct {
   void (*GetVector)(const SPHLoops *l, double a[]);                              /* vector -> n x 3                      */
   void (*Rate)(const SPHLoops *l, double factor, const double scale[], double rate[]); /* factor scale D vector          */
   void (*Diagonal)(const SPHLoops *l, double diagonal[]);                        /* of D D^T                             */
-  void (*Viscosity)(const SPHLoops *l, double mu_over_rho2, double a[]);         /* a += viscous acceleration of vector  */
+  void (*Viscosity)(const SPHLoops *l, int central, double mu_over_rho2, double a[]); /* a += viscous acceleration of vector */
   void (*Filter)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum [(v_i - v_j) . g] g of vector */
 } SPHLoopTable;
 

@@ -335,28 +335,33 @@ static void Diagonal(const SPHLoops *l, double diagonal[])
   }
 }
 
-static void Viscosity(const SPHLoops *l, double mu_over_rho2, double a[])
+/* a_i += viscous acceleration, by Monaghan's form when `central`, else by Morris's */
+static void Viscosity(const SPHLoops *l, int central, double mu_over_rho2, double a[])
 {
-  const real *v = (const real *)l->vector, *gradient = (const real *)l->gradient, h = (real)l->h;
+  const real *v = (const real *)l->vector, *gradient = (const real *)l->gradient, h = (real)l->h, mu = (real)mu_over_rho2;
 
 #pragma omp parallel for schedule(dynamic, 1)
   for (int c = 0; c < Chunks(l); c++) {
     for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
       const int  *list = l->neighbour + l->start[i];
       const real *g = gradient + 3 * (size_t)l->start[i];
+      const Vec4  vi = Load4(v + 4 * (size_t)i);
       Vec4        sum = {0};
 
       for (int k = 0; k < l->count[i]; k++, g += 3) {
-        const int j = list[k];
-        real      r2 = 0, v_dot_x = 0;
+        const int  j = list[k];
+        const Vec4 v_ij = vi - Load4(v + 4 * (size_t)j);
+        real       r2 = 0, v_dot_x = 0, x_dot_g = 0;
 
         for (int q = 0; q < 3; q++) {
           double dx = l->x[3*i + q] - l->x[3*j + q];
           if (l->grid.periodic[q]) dx -= l->grid.period[q] * rint(dx / l->grid.period[q]);
           r2 += (real)(dx * dx);
-          v_dot_x += (v[4 * (size_t)i + q] - v[4 * (size_t)j + q]) * (real)dx;
+          v_dot_x += v_ij[q] * (real)dx;
+          x_dot_g += g[q] * (real)dx;
         }
-        sum += SPHPairViscosity((real)mu_over_rho2, v_dot_x, r2, h) * Load4(g);
+        if (central) sum += SPHPairViscosityMonaghan(mu, v_dot_x, r2, h) * Load4(g);
+        else sum += SPHPairViscosityMorris(mu, x_dot_g, r2, h) * v_ij;
       }
       for (int q = 0; q < 3; q++) a[3*i + q] += (double)sum[q];
     }

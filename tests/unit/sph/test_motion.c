@@ -42,6 +42,7 @@ static void ClosedDropKeepsItsMomenta(void **state)
 
     sph->params.precision = variant & 1;
     sph->params.viscosity = variant / 2 ? 0.5 : 0.0;
+    sph->params.viscous_form = SPH_VISCOUS_MONAGHAN;
     sph->params.noise_damping = 0.0;
     AddLattice(sph, 6, 6, 6, 0.0095, 0.1, v);
     for (int i = 0; i < 216; i++) {
