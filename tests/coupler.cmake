@@ -6,5 +6,6 @@ function(byssus_run_test label name)
 endfunction()
 
 byssus_run_test(conservation free_body)
+byssus_run_test(conservation resume)
 byssus_run_test(coupled held_ball)
 byssus_run_test(coupled floating_ball)
