@@ -99,8 +99,10 @@ static PetscErrorCode Reserve(Proxy p, PetscInt n)
 {
   PetscFunctionBegin;
   if (n <= p->capacity) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(p->reach));
   PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
   p->capacity = n + n/4;
+  PetscCall(PetscMalloc1(p->capacity, &p->reach));
   PetscCall(PetscMalloc7(p->capacity, &p->points, 3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity,
                          &p->force, 3*p->capacity, &p->centre));
   PetscCall(PetscArrayzero(p->force, 3*p->capacity));
@@ -164,7 +166,7 @@ static void PlaceSupport(Proxy p, PetscInt i, PetscReal longest, ProxyPoint *b)
   if (p->params.kernel == PROXY_KERNEL_HALF_SPACE) {
     b->radius[0] = R*PetscMax(1.0, sqrt(p->geometry.area[t]/q->area0[t]));
     // beyond a sharp edge a patch's neighbour must be seen as long as the patch is
-    b->radius[1] = s->patch_sharp[s->patch[t]] ? PetscMax(1.5*h, longest + 0.5*h) : 1.5*h;
+    b->radius[1] = PROXY_FRONT_FADE*h + (s->patch_sharp[s->patch[t]] ? longest : h);
     return;
   }
   double       e[3], l;
@@ -433,6 +435,7 @@ PetscErrorCode ProxyDestroy(Proxy *proxy)
   PetscCall(ProxyGeometryDestroy(&p->geometry));
   PetscCall(ProxySamplingDestroy(&p->sampling));
   PetscCall(ProxyContactsDestroy(p));
+  PetscCall(PetscFree(p->reach));
   PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
   PetscCall(PetscFree(p->node_velocity));
   PetscCall(PetscFree(p->node_weight));

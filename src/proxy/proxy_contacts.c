@@ -72,6 +72,10 @@ static void BaseShift(const Proxy p, double base[3])
 }
 static inline void ImageShift(const ProxyFluid *fluid, const double base[3], int image, double shift[3])
 {
+  if (!fluid->periodic) {
+    shift[0] = shift[1] = shift[2] = 0.0;
+    return;
+  }
   shift[0] = base[0] + (image%3 - 1)*Period(fluid, 0);
   shift[1] = base[1] + (image/3%3 - 1)*Period(fluid, 1);
   shift[2] = base[2] + (image/9 - 1)*Period(fluid, 2);
@@ -96,6 +100,16 @@ static void Support(const Proxy p, const ProxyPoint *b, double middle[3], double
   for (int k = 0; k < 3; k++) middle[k] = b->x[k] + up*b->n[k];
 }
 
+static void SetReach(const ProxyPoint *b, const double middle[3], double half, double radius, ProxyReach *reach)
+{
+  const double up = (middle[0] - b->x[0])*b->n[0] + (middle[1] - b->x[1])*b->n[1] + (middle[2] - b->x[2])*b->n[2];
+
+  for (int k = 0; k < 3; k++) reach->x[k] = b->x[k], reach->n[k] = b->n[k];
+  reach->radius2 = radius*radius*(1.0 + 1e-12);
+  reach->low     = up - half;
+  reach->high    = up + half;
+}
+
 /* range of cells of one image of a support; empty: 0 */
 static int CellRange(const ProxyCells *c, const double n[3], const double middle[3], double half, double radius, PetscInt lo[3], PetscInt hi[3])
 {
@@ -118,6 +132,7 @@ static void SizeCells(const Proxy p, ProxyCells *c)
   for (PetscInt i = 0; i < p->sampling.n; i++) {
     double middle[3], half, radius;
     Support(p, &p->points[i], middle, &half, &radius);
+    SetReach(&p->points[i], middle, half, radius, &p->reach[i]);
     for (int k = 0; k < 3; k++) {
       const double n = p->points[i].n[k], e = fabs(n)*half + sqrt(PetscMax(0.0, 1.0 - n*n))*radius;
       c->lo[k] = PetscMin(c->lo[k], middle[k] - e);
@@ -238,6 +253,12 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
   }
 }
 
+static inline int OutOfReach(const ProxyReach *reach, const double r[3])
+{
+  const double up = Dot3(reach->n, r);
+  return Dot3(r, r) - up*up > reach->radius2 || up < reach->low || up > reach->high;
+}
+
 /* gather the pairs of a particle; returns their number, *n_slots patches among them, sums of weights by slot, whether the mean height is
    positive; 0 when nothing touches */
 static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3], PetscInt begin, PetscInt end, Touch touch[], int *n_slots,
@@ -248,13 +269,15 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
 
   *n_slots = 0;
   for (PetscInt e = begin; e < end; e++) {
-    const PetscInt    i = p->cells.entry[e]/27, patch = p->surface.patch[p->sampling.triangle[i]];
+    const PetscInt    i = p->cells.entry[e]/27;
     const ProxyPoint *b = &p->points[i];
     double            r[3], shift[3];
     int               slot = 0;
     ImageShift(&p->fluid, base, p->cells.entry[e]%27, shift);
-    for (int k = 0; k < 3; k++) r[k] = x[k] - b->x[k] - shift[k];
+    for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
+    if (OutOfReach(&p->reach[i], r)) continue;
     if (!ProxyPairHalfSpace(p->fluid.kernel, p->fluid.h, b, r, &touch[n].pair) || !(touch[n].pair.w > 0.0)) continue;
+    const PetscInt patch = p->surface.patch[p->sampling.triangle[i]];
     while (slot < *n_slots && slots[slot] != patch) slot++;
     if (slot == PROXY_PATCHES) continue;
     if (slot == *n_slots) {
@@ -344,7 +367,8 @@ static int ParticleEllipsoid(Chunk *c, const Proxy p, PetscInt particle, const d
     const ProxyPoint *b = &p->points[i];
     double            r[3], shift[3];
     ImageShift(&p->fluid, base, p->cells.entry[e]%27, shift);
-    for (int k = 0; k < 3; k++) r[k] = x[k] - b->x[k] - shift[k];
+    for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
+    if (OutOfReach(&p->reach[i], r)) continue;
     const double part = ProxyPairEllipsoid(p->fluid.kernel, p->fluid.h, b, r, grad[n]);
     if (part == 0.0) continue;
     phi += part;

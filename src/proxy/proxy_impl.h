@@ -59,6 +59,11 @@ typedef struct {
   PetscReal *x;                          /* n_nodes x 3 [m], where the surface was when sampled            */
 } ProxySampling;
 
+/* what rejects most proxies of a cell: position, normal, squared tangential radius, range of n.r */
+typedef struct {
+  double x[3], n[3], radius2, low, high;
+} ProxyReach;
+
 /* cells over the supports: the proxies that may touch a particle in a cell */
 typedef struct {
   double    lo[3], cell;
@@ -88,6 +93,7 @@ struct _p_Proxy {
   PetscInt      n_samplings;    /* how often the surface was sampled                                       */
   PetscInt      capacity;       /* of the arrays by proxy                                                  */
   ProxyPoint   *points;         /* n                                                                       */
+  ProxyReach   *reach;          /* n                                                                       */
   PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
   PetscReal    *centre;         /* n x 3 [m], middle of the triangles that each stands for: always inside its patch */
   PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */

@@ -13,7 +13,7 @@
 /* the ellipsoid kernel is not normalised: it fades to nothing over this part of h behind the surface */
 #define PROXY_ELLIPSOID_FADE 0.25
 /* in front, weights end over this part of h before z_max; nothing acts beyond z = h anyway */
-#define PROXY_FRONT_FADE 0.5
+#define PROXY_FRONT_FADE 0.25
 /* the osculating surface is used from its own side only: weights end where 1 + c z0 falls from this to 0 (a ball's equator) */
 #define PROXY_SIDE_FADE 0.5
 
