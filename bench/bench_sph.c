@@ -1,7 +1,8 @@
 /* bench_sph.c - speed and error of the fluid alone, both from one run: water poured into a tank as a lattice comes to rest.
-     bench.sph -n 24,24,40 -end 1 [-sph_solver jacobi ...] [-pack] [-quiet]
-   n particles along x, y, z; walls on five sides (-open_sides: periodic in x and y); depth H = n_z dx = 0.4 m. Prints compression,
-   pressure against rho g z, force on the floor, speed and offset of the wetted surface, then times by phase. */
+     bench.sph -n 24,24,40 -end 1 [-sph_solver jacobi ...] [-pack] [-quiet] [-length 1.0]
+    n particles along x, y, z; walls on five sides (-open_sides: periodic in x and y); depth H = n_z dx = 0.4 m. Prints compression,
+   pressure against rho g z, force on the floor, speed and offset of the wetted surface, then times by phase. A tank longer than the
+   water (-length [m]) makes a dam break; then energies and the particle deepest in a wall are what to look at. */
 #include <math.h>
 #include <petsctime.h>
 
@@ -16,6 +17,7 @@ typedef struct {
   PetscReal      phase[N_PHASES];
   PetscLogDouble start;
   PetscReal      gauge[3], gauge_sum[3], gauge_square[3]; /* depths of gauges in the middle of the tank over H; p/(rho g z) */
+  PetscReal      deepest, energy; /* smallest distance from a wall [m]; kinetic and potential energy at the start [J] */
   PetscReal      force_sum, force_square, height_sum, error_sum, iterations, compression, compression_max;
   PetscInt       n_steps, n_measured, not_converged, worst;
 } Run;
@@ -56,6 +58,21 @@ static PetscErrorCode Measure(SPH sph, Run *run, PetscReal *error, PetscReal *he
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Deepest(SPH sph, Run *run)
+{
+  const PetscReal *x;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(SPHGetSize(sph, &n));
+  PetscCall(SPHGetState(sph, &x, NULL, NULL, NULL, NULL));
+  for (PetscInt i = 0; i < n; i++) {
+    run->deepest = PetscMin(run->deepest, x[3 * i + 2]);
+    for (int k = 0; k < 2 && run->walls; k++) run->deepest = PetscMin(run->deepest, PetscMin(x[3 * i + k] - run->lo[k], run->hi[k] - x[3 * i + k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Step(SPH sph, Run *run, PetscReal *time, PetscReal from)
 {
   PetscReal dt, force[18], error, height;
@@ -79,6 +96,8 @@ static PetscErrorCode Step(SPH sph, Run *run, PetscReal *time, PetscReal from)
   *time += dt;
   run->n_steps++;
   run->iterations += stats.iterations;
+  PetscCall(Deepest(sph, run));
+  if (run->n_steps == 1) run->energy = stats.kinetic + stats.potential;
   run->worst = PetscMax(run->worst, stats.iterations);
   run->not_converged += !stats.converged;
   if (*time >= from) {
@@ -131,6 +150,8 @@ static PetscErrorCode Report(SPH sph, Run *run, PetscReal time, PetscReal from)
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "offset of the wetted surface: %.3f dx\n", (double)((run->height_sum / run->n_measured - 0.5 * run->depth) / dx)));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "speed / sqrt(g H): rms %.2f %%, largest %.2f %%\n", 100.0 * (double)(stats.speed_rms / sqrt(run->g * run->depth)),
                         100.0 * (double)(stats.speed_max / sqrt(run->g * run->depth))));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "smallest distance from a wall: %.3f dx; energy left: %.4f of what was there at first\n", (double)(run->deepest / dx),
+                        (double)((stats.kinetic + stats.potential) / run->energy)));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "operator applications a step: mean %.2f, most %d; solves that stopped at the limit: %d\n", (double)(run->iterations / run->n_steps),
                         (int)run->worst, (int)run->not_converged));
   for (int k = 0; k < N_PHASES; k++) {
@@ -168,7 +189,7 @@ static PetscErrorCode Main(void)
   SPHParams       *par;
   Run              run;
   PetscInt         n[3] = {24, 24, 40}, n_read = 3;
-  PetscReal        end = 1.0, from = -1.0, time = 0.0, next = 0.0, dx, particle_mass;
+  PetscReal        end = 1.0, from = -1.0, length = 0.0, time = 0.0, next = 0.0, dx, particle_mass;
   PetscBool        open_sides = PETSC_FALSE, quiet = PETSC_FALSE, pack = PETSC_FALSE;
   const PetscReal  g[3] = {0, 0, -9.81}, lo[3] = {0, 0, 0};
 
@@ -181,8 +202,9 @@ static PetscErrorCode Main(void)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-pack", &pack, NULL));
   if (from < 0) from = 0.5 * end;
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-length", &length, NULL));
   dx = 0.4 / n[2];
-  const PetscReal hi[3] = {n[0] * dx, n[1] * dx, 0.8};
+  const PetscReal hi[3] = {PetscMax(length, n[0] * dx), n[1] * dx, 0.8};
 
   PetscCall(SPHCreate(PETSC_COMM_SELF, &sph));
   PetscCall(SPHGetParams(sph, &par));
@@ -193,7 +215,8 @@ static PetscErrorCode Main(void)
   PetscCall(Fill(sph, n, dx));
   ByCall(SPHSetUp(sph));
   if (pack) ByCall(SPHPack(sph, 1e-3, 50, NULL, NULL));
-  run.walls = (PetscBool)!open_sides;
+  run.walls   = (PetscBool)!open_sides;
+  run.deepest = 1.0;
   run.g     = 9.81;
   for (int k = 0; k < 3; k++) run.gauge[k] = 0.25 * (k + 1);
   for (int k = 0; k < 2; k++) run.hi[k] = hi[k];
@@ -209,7 +232,7 @@ static PetscErrorCode Main(void)
       PetscCall(SPHGetStats(sph, &s));
       PetscCall(SPHGetWallForces(sph, f));
       PetscCall(Measure(sph, &run, &error, &height));
-      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "t %.3f dt %.2e it %d floor %.4f rms %.4f max %.3f comp %.1e %.1e offset %.3f p error %.3f\n", (double)time, (double)(time / run.n_steps), (int)s.iterations,
+      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "t %.3f dt %.2e E %.4f it %d floor %.4f rms %.4f max %.3f comp %.1e %.1e offset %.3f p error %.3f\n", (double)time, (double)(time / run.n_steps), (double)((s.kinetic + s.potential) / run.energy), (int)s.iterations,
                             (double)(f[14] / (-particle_mass * n[0] * n[1] * n[2] * run.g)), (double)(s.speed_rms / sqrt(run.g * run.depth)), (double)s.speed_max, (double)s.compression_mean, (double)s.compression_max,
                             (double)((height - 0.5 * run.depth) / dx), (double)error));
       next += end / 20;

@@ -38,7 +38,7 @@ struct _p_SPH {
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
-  PetscReal phi_lone, phi_full;      /* of SPHWallBound: lambda at 0.25 and at 0.1 dx [1] */
+  PetscReal phi_lone, phi_full;      /* of SPHWallBound: s lambda at 0.3 and at 0.2 dx [1] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
