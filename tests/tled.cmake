@@ -16,3 +16,7 @@ set_tests_properties(unit.tled.solid_from_surface PROPERTIES LABELS unit TIMEOUT
 # the device's loops against the CPU's; 77 = no device here
 byssus_test(backend/test_tled_cuda base tled)
 set_tests_properties(backend.tled_cuda PROPERTIES LABELS "backend;cuda" SKIP_RETURN_CODE 77)
+
+# the reader of meshes; what PETSc's reader loses when it gives up is not ours
+byssus_test(fuzz/test_tled_mesh base tled)
+set_property(TEST fuzz.tled_mesh APPEND PROPERTY ENVIRONMENT "ASAN_OPTIONS=detect_leaks=0")

@@ -62,16 +62,16 @@ BY_EXTERN PetscErrorCode TLEDGetPositions(TLED tled, const PetscReal *x[], const
 /* critical step 2/omega_max of the current state by power iteration [s], without the safety factor */
 BY_EXTERN PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt);
 /* Advance by exactly `dt` in the fewest equal substeps <= safety * critical step, external force f held, central differences in
-   velocity form (half kick, drift, half kick: u and v at the same time); n_substeps is what was taken. An inverted element, NaN or a step over the limit returns
-   BY_ERR_BREAKDOWN, TLEDGetBreakdown tells element, position and time. The critical step is renewed as the body deforms. */
+   velocity form (half kick, drift, half kick: u and v at the same time); n_substeps is what was taken. An inverted element or a NaN
+   returns BY_ERR_BREAKDOWN, TLEDGetBreakdown tells element, position and time. The critical step is renewed as the body deforms. */
 BY_EXTERN PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps);
 BY_EXTERN PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps);
 BY_EXTERN PetscErrorCode TLEDGetBreakdown(TLED tled, const char **message);
 /* snapshot of u, v, time, energies and back (one level; the staggered loop runs a step twice) */
 BY_EXTERN PetscErrorCode TLEDSave(TLED tled);
 BY_EXTERN PetscErrorCode TLEDRestore(TLED tled);
-/* sum over the substeps of the last Advance of dt_s sum_a x_a x f_a [N m s], the moment that the held forces f really gave (3 numbers, borrowed):
-   the coupler keeps angular momentum with it */
+/* sum over the substeps of the last Advance of dt_s sum_a x_a x f_a [N m s], the moment that the held forces f really gave (3 numbers,
+   borrowed; zero for a body that is held): the coupler keeps angular momentum with it */
 BY_EXTERN PetscErrorCode TLEDGetAngularImpulse(TLED tled, const PetscReal *impulse[]);
 /* what Advance carries on besides u and v (time, works, critical step, its mode) as n numbers, for a checkpoint: with u, v and f set to
    what they were and then SetState, a run goes on with the same bits. GetState(tled, &n, NULL) asks for n. */

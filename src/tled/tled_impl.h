@@ -39,8 +39,8 @@ typedef struct {
   char      name[BY_NAMES_MAX][BY_NAME_MAX];
   PetscInt  dim[BY_NAMES_MAX];
   PetscInt  n_tets, n_triangles;            /* first order; -1: not counted (binary file) */
-  PetscInt  n_other;                        /* elements of other kinds with a volume or of higher order */
-  char      other[64];                      /* what the first of them is */
+  PetscInt  n_other;                        /* 1: there is an element of another kind or of higher order */
+  char      other[64];                      /* what it is */
   PetscInt *tag;                            /* number of each tetrahedron, in the file's order; NULL for a binary file */
 } TLEDGmshFile;
 

@@ -18,12 +18,12 @@ static PetscErrorCode ReadPlex(const char key[], const char path[], DM *dm)
   ierr = DMPlexCreateGmshFromFile(PETSC_COMM_SELF, path, PETSC_TRUE, dm);
   PetscCall(PetscPopErrorHandler());
   if (!given) PetscCall(PetscOptionsClearValue(NULL, option));
-  if (ierr)
-    PetscFunctionReturn(InputError(
-        key,
-        "is a gmsh file that cannot be read (PETSc's reader: error %d)\n  write it again with gmsh (formats 4.1 and 2.2 are read)",
-        (int)ierr));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ierr) PetscFunctionReturn(PETSC_SUCCESS);
+  *dm = NULL; /* what PETSc leaves of a mesh it could not finish cannot be destroyed */
+  PetscFunctionReturn(InputError(key,
+                                 "is a gmsh file that cannot be read (PETSc's reader: error %d)\n"
+                                 "  write it again with gmsh (formats 4.1 and 2.2 are read)",
+                                 (int)ierr));
 }
 
 /* refuse what is not a mesh of first-order tetrahedra */
@@ -34,10 +34,7 @@ static PetscErrorCode CheckKind(const char key[], const TLEDGmshFile *file, DM d
 
   PetscFunctionBegin;
   if (file->n_other)
-    PetscFunctionReturn(InputError(key,
-                                   "holds a %s (and %" PetscInt_FMT
-                                   " more elements that are not used)\n  expected a mesh of first-order (4-node) tetrahedra only",
-                                   file->other, file->n_other - 1));
+    PetscFunctionReturn(InputError(key, "holds a %s\n  expected a mesh of first-order (4-node) tetrahedra only", file->other));
   if (file->n_tets == 0)
     PetscFunctionReturn(InputError(key,
                                    "is a mesh of the wrong kind: no tetrahedra, %" PetscInt_FMT
@@ -62,7 +59,7 @@ static PetscErrorCode CheckKind(const char key[], const TLEDGmshFile *file, DM d
 
 /* Coordinates and connectivity. Plex keeps the file's corner order but for its own convention, in which a tetrahedron of positive
    volume has its first two corners exchanged: an element inverted in the file stays so, and is found by CheckVolumes(). */
-static PetscErrorCode GetCells(DM dm, const TLEDParams *p, TLEDMesh *mesh)
+static PetscErrorCode GetCells(const char key[], DM dm, const TLEDParams *p, TLEDMesh *mesh)
 {
   PetscInt           c, c_start, c_end, v_start, v_end, n, k, a;
   PetscInt          *closure = NULL;
@@ -76,6 +73,10 @@ static PetscErrorCode GetCells(DM dm, const TLEDParams *p, TLEDMesh *mesh)
   mesh->n_nodes = v_end - v_start;
   PetscCall(PetscMalloc3(3 * mesh->n_nodes, &mesh->X, 4 * mesh->n_tets, &mesh->tets, mesh->n_tets, &mesh->tag));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(VecGetLocalSize(coordinates, &n));
+  if (n != 3 * mesh->n_nodes)
+    PetscFunctionReturn(
+        InputError(key, "holds elements of second or higher order\n  expected a mesh of first-order (4-node) tetrahedra only"));
   PetscCall(VecGetArrayRead(coordinates, &xyz));
   for (k = 0; k < 3 * mesh->n_nodes; k++) mesh->X[k] = p->scale * PetscRealPart(xyz[k]) + p->translate[k % 3];
   PetscCall(VecRestoreArrayRead(coordinates, &xyz));
@@ -119,7 +120,7 @@ static PetscErrorCode CheckVolumes(const char key[], const TLEDMesh *mesh)
 
 /* triangles with one tetrahedron, turned so that the normal points away from its fourth corner; face_triangle[f] is the number of
    the triangle made of face f, or -1 */
-static PetscErrorCode GetBoundary(DM dm, TLEDMesh *mesh, PetscInt face_triangle[])
+static PetscErrorCode GetBoundary(const char key[], DM dm, TLEDMesh *mesh, PetscInt face_triangle[])
 {
   PetscInt        f, f_start, f_end, v_start, v_end, c_start, n, k, a;
   PetscInt       *closure = NULL;
@@ -132,6 +133,13 @@ static PetscErrorCode GetBoundary(DM dm, TLEDMesh *mesh, PetscInt face_triangle[
   for (f = f_start; f < f_end; f++) {
     PetscCall(DMPlexGetSupportSize(dm, f, &n));
     face_triangle[f - f_start] = n == 1 ? mesh->n_triangles++ : -1;
+    if (n <= 2) continue;
+    PetscCall(DMPlexGetSupport(dm, f, &support));
+    PetscFunctionReturn(
+        InputError(key,
+                   "has elements that overlap: %" PetscInt_FMT " tetrahedra, number %" PetscInt_FMT
+                   " of the file among them, share one face\n  a face belongs to two tetrahedra, or to one at the boundary",
+                   n, mesh->tag[support[0] - c_start]));
   }
   PetscCall(PetscMalloc1(3 * mesh->n_triangles, &mesh->triangles));
   for (f = f_start; f < f_end; f++) {
@@ -206,16 +214,19 @@ static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLED
 
 static PetscErrorCode ConvertPlex(DM dm, const char key[], const TLEDGmshFile *file, const TLEDParams *params, TLEDMesh *mesh)
 {
-  PetscInt e, g, f_start, f_end, *face_triangle;
+  PetscInt       e, g, f_start, f_end, *face_triangle;
+  PetscErrorCode ierr;
 
   PetscFunctionBegin;
   ByCall(CheckKind(key, file, dm));
-  PetscCall(GetCells(dm, params, mesh));
+  ByCall(GetCells(key, dm, params, mesh));
   for (e = 0; e < mesh->n_tets; e++) mesh->tag[e] = file->n_tets == mesh->n_tets ? file->tag[e] : e + 1;
   ByCall(CheckVolumes(key, mesh));
   PetscCall(DMPlexGetHeightStratum(dm, 1, &f_start, &f_end));
   PetscCall(PetscMalloc1(f_end - f_start, &face_triangle));
-  PetscCall(GetBoundary(dm, mesh, face_triangle));
+  ierr = GetBoundary(key, dm, mesh, face_triangle);
+  if (ierr) PetscCall(PetscFree(face_triangle));
+  ByCall(ierr);
   mesh->n_groups = file->n_groups;
   PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
   for (g = 0; g < mesh->n_groups; g++) {

@@ -1,38 +1,6 @@
 /* Reading gmsh files: what is read is what is in the file, and every way a mesh can be wrong is told with file, group and
    element. */
-#include "unit/tled/body.h"
-#include <unistd.h>
-
-/* a cube cut into six tetrahedra; `swap` 1 exchanges two corners of element 12, 2 of all; `flat` pulls node 6 to the floor */
-static void WriteCube(const char path[], int version, int swap, int flat, const char extra[])
-{
-  static const int tets[6][4]   = {{1, 2, 3, 7}, {1, 3, 4, 7}, {1, 4, 8, 7}, {1, 8, 5, 7}, {1, 5, 6, 7}, {1, 6, 2, 7}};
-  static const int bottom[2][3] = {{1, 3, 2}, {1, 4, 3}};
-  FILE            *f            = fopen(path, "w");
-
-  assert_non_null(f);
-  fprintf(f, "$MeshFormat\n%s 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 7 \"floor\"\n3 9 \"solid\"\n$EndPhysicalNames\n",
-          version == 22 ? "2.2" : "4.1");
-  if (version == 41) fprintf(f, "$Entities\n0 0 1 1\n1 0 0 0 1 1 0 1 7 0\n1 0 0 0 1 1 1 1 9 1 1\n$EndEntities\n");
-  fprintf(f, version == 22 ? "$Nodes\n8\n" : "$Nodes\n1 8 1 8\n3 1 0 8\n");
-  for (int a = 1; a <= 8 && version == 41; a++) fprintf(f, "%d\n", a);
-  for (int a = 0; a < 8; a++) {
-    const int b = a % 4;
-    if (version == 22) fprintf(f, "%d ", a + 1);
-    fprintf(f, "%d %d %g\n", b == 1 || b == 2, b > 1, flat && a == 5 ? 0.0 : a > 3 ? 1.0 : 0.0);
-  }
-  fprintf(f, "$EndNodes\n$Elements\n%s", version == 22 ? "8\n" : "2 8 1 16\n2 1 2 2\n");
-  for (int t = 0; t < 2; t++)
-    fprintf(f, version == 22 ? "%d 2 2 7 1 %d %d %d\n" : "%d %d %d %d\n", t + 1, bottom[t][0], bottom[t][1], bottom[t][2]);
-  if (version == 41) fprintf(f, "3 1 4 6\n");
-  for (int t = 0; t < 6; t++) {
-    const int s = swap && (t == 2 || swap == 2);
-    fprintf(f, version == 22 ? "%d 4 2 9 1 %d %d %d %d\n" : "%d %d %d %d %d\n", t + 10, tets[t][s], tets[t][!s], tets[t][2],
-            tets[t][3]);
-  }
-  fprintf(f, "$EndElements\n%s", extra ? extra : "");
-  assert_int_equal(fclose(f), 0);
-}
+#include "unit/tled/cube.h"
 
 static char *Path(const char name[])
 {
@@ -195,6 +163,36 @@ static void WrongKinds_AreRefused(void **state)
   unlink(path);
 }
 
+/* what would make a reader run out of its arrays: an element of a node that is not there, and more elements at a face than a body
+ * has */
+static void ImpossibleMesh_IsRefused(void **state)
+{
+  static const int versions[2] = {22, 41};
+  TLEDParams      *p;
+  char            *path = Path("impossible.msh"), text[4096], *at;
+  FILE            *f;
+
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    WriteCube(path, versions[i], 0, 0, NULL);
+    f                                        = fopen(path, "r");
+    text[fread(text, 1, sizeof text - 1, f)] = 0;
+    fclose(f);
+    at    = strstr(text, "1 4 8 7\n"); /* element 12 */
+    at[2] = '9';
+    f     = fopen(path, "w");
+    fputs(text, f);
+    fclose(f);
+    REFUSED(Body(path, &p), "element 12 has node 9, which is not in the file");
+    at[2] = '3', at[4] = '6'; /* a third tetrahedron on the face 1 3 7 */
+    f = fopen(path, "w");
+    fputs(text, f);
+    fclose(f);
+    REFUSED(Body(path, &p), "body.mesh", "elements");
+  }
+  unlink(path);
+}
+
 static void InvertedElement_IsNamed(void **state)
 {
   static const int versions[2] = {22, 41};
@@ -276,5 +274,5 @@ static void ShippedMeshes_AreGood(void **state)
 
 CHECK_MAIN(cmocka_unit_test(Cube_IsReadAsWritten), cmocka_unit_test(MissingAndForeignFiles_AreRefused),
            cmocka_unit_test(TruncatedFile_IsRefused), cmocka_unit_test(WrongKinds_AreRefused),
-           cmocka_unit_test(InvertedElement_IsNamed), cmocka_unit_test(MissingGroup_IsNamedWithTheNearest),
-           cmocka_unit_test(ShippedMeshes_AreGood))
+           cmocka_unit_test(ImpossibleMesh_IsRefused), cmocka_unit_test(InvertedElement_IsNamed),
+           cmocka_unit_test(MissingGroup_IsNamedWithTheNearest), cmocka_unit_test(ShippedMeshes_AreGood))
