@@ -233,7 +233,7 @@ PetscErrorCode SPHSetUp(SPH sph)
     sph->relax_time       = speed > 0 ? 0.5 * sph->h / speed : -1.0;
   }
   sph->phi_lone    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.3 * par->spacing, sph->h);
-  sph->phi_full    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.2 * par->spacing, sph->h);
+  sph->phi_full    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.1 * par->spacing, sph->h);
   sph->filter_norm = SPHFilterNorm(grad2 * sph->mass * sph->mass);
   sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
 

@@ -38,7 +38,7 @@ struct _p_SPH {
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
-  PetscReal phi_lone, phi_full;      /* of SPHWallBound: s lambda at 0.3 and at 0.2 dx [1] */
+  PetscReal phi_lone, phi_full;      /* of SPHWallBound: s lambda at 0.3 and at 0.1 dx [1] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
@@ -95,6 +95,7 @@ PETSC_INTERN void SPHSumPartials(SPH sph, int n_sums, PetscReal sums[]);
 
 /* sph_walls.c */
 PETSC_INTERN PetscErrorCode SPHFindPlanes_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHWallExcess_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHWallRate_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
 /* distance [m] of a position from plane k (0..5), positive inside; gradient +-1 along its axis in *sign */

@@ -40,14 +40,6 @@ static PetscReal OtherPlanes(int n, const PetscReal phi[], int k)
 /* A particle deep in a wall is a particle at distance `least` for friction: the first layer settles at 0.15 to 0.25 dx */
 static PetscReal FrictionDistance(SPH sph, PetscReal d) { return PetscMax(d, 0.1 * sph->params.spacing); }
 
-/* rho0 (phi - bound) of one wall, where the other walls leave `c` open [kg/m^3]; negative where the wall is far enough */
-static PetscReal WallExcess(SPH sph, int i, PetscReal phi, PetscReal c)
-{
-  const PetscReal rho0 = sph->params.density, filled = c > 0 ? sph->rho_pairs[i] / (rho0 * c) : 1.0;
-
-  return rho0 * (phi - SPHWallBound(filled, sph->phi_lone, sph->phi_full));
-}
-
 PetscErrorCode SPHFindPlanes_Internal(SPH sph)
 {
   const int       n    = (int)sph->n;
@@ -57,13 +49,12 @@ PetscErrorCode SPHFindPlanes_Internal(SPH sph)
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     int        plane[6];
-    PetscReal  phi[6], slope[6], d[6], G[3] = {0, 0, 0}, open = 1.0, friction = 0.0, excess = -rho0;
+    PetscReal  phi[6], slope[6], d[6], G[3] = {0, 0, 0}, open = 1.0, friction = 0.0;
     const int  touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
 
     for (int k = 0; k < touched; k++) {
       const PetscReal c = OtherPlanes(touched, phi, k);
       open *= 1.0 - phi[k];
-      excess = PetscMax(excess, WallExcess(sph, i, phi[k], c));
       G[plane[k] / 2] += rho0 * c * slope[k];
       friction += SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
     }
@@ -71,7 +62,6 @@ PetscErrorCode SPHFindPlanes_Internal(SPH sph)
     sph->open_surfaces[i] = 1.0;
     for (int k = 0; k < 3; k++) sph->G[3 * i + k] = sph->G_planes[3 * i + k] = G[k];
     sph->wall_rate[i]     = 0.0;
-    sph->wall_excess[i]   = excess;
     if (sph->friction_planes) sph->friction_planes[i] = friction;
   }
   sph->table->SetWalls(&sph->loops, sph->G);
@@ -147,7 +137,6 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
       const PetscInt i = contacts[s].particle[t];
       w->union_factor[t] *= sph->open_surfaces[i];
       sph->open_surfaces[i] *= PetscMax(0.0, 1.0 - contacts[s].phi[t]);
-      sph->wall_excess[i] = PetscMax(sph->wall_excess[i], WallExcess(sph, (int)i, contacts[s].phi[t], w->union_factor[t]));
       if (sph->params.viscosity > 0) w->friction[t] = SurfaceFriction(sph, &contacts[s], t, w->union_factor[t]);
     }
   }
@@ -165,6 +154,40 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
     sph->table->SetWalls(&sph->loops, sph->G);
   }
   PetscCall(PetscLogEventEnd(SPH_Contacts, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* rho0 (phi - bound) of one wall, where the other walls leave `c` open [kg/m^3]; negative where the wall is far enough */
+static PetscReal WallExcess(SPH sph, int i, PetscReal phi, PetscReal c)
+{
+  const PetscReal rho0 = sph->params.density, filled = c > 0 ? sph->rho_pairs[i] / (rho0 * c) : 1.0;
+
+  return rho0 * (phi - SPHWallBound(filled, sph->phi_lone, sph->phi_full));
+}
+
+/* wall_excess = the largest excess over planes and surfaces, for the current contacts */
+PetscErrorCode SPHWallExcess_Internal(SPH sph)
+{
+  const int n = (int)sph->n;
+
+  PetscFunctionBegin;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    int       plane[6];
+    PetscReal phi[6], slope[6], d[6], excess = -sph->params.density;
+    const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
+
+    for (int k = 0; k < touched; k++) excess = PetscMax(excess, WallExcess(sph, i, phi[k], OtherPlanes(touched, phi, k) * sph->open_surfaces[i]));
+    sph->wall_excess[i] = excess;
+  }
+  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
+    const SPHContacts *q = &sph->contacts[s];
+#pragma omp parallel for schedule(static)
+    for (PetscInt t = 0; t < q->n_touched; t++) {
+      const PetscInt i    = q->particle[t];
+      sph->wall_excess[i] = PetscMax(sph->wall_excess[i], WallExcess(sph, (int)i, q->phi[t], sph->surfaces[s].union_factor[t]));
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
