@@ -189,7 +189,7 @@ static PetscErrorCode AllocateState(SPH sph)
   PetscCall(PetscCalloc6(SPH_CHUNKS(n) * SPH_SUMS, &sph->partial, n, &sph->order, n, &sph->rho, 3 * n, &sph->v_star, 3 * n, &sph->accel, n, &sph->rho_pairs));
   PetscCall(PetscCalloc6(n, &sph->open, n, &sph->open_surfaces, 3 * n, &sph->G_planes, 3 * n, &sph->G, n, &sph->rate, n, &sph->wall_rate));
   PetscCall(PetscCalloc1(n, &sph->wall_excess));
-  PetscCall(PetscCalloc6(n, &sph->rhs, n, &sph->diagonal, n, &sph->scale, n, &sph->y, n, &sph->residual, n, &sph->direction));
+  PetscCall(PetscCalloc6(n, &sph->rhs, n, &sph->root, n, &sph->scale, n, &sph->y, n, &sph->residual, n, &sph->direction));
   PetscCall(PetscCalloc4(n, &sph->Adirection, n, &sph->p_tilde, n, &sph->response, n, &sph->mode));
   if (sph->params.viscosity > 0) PetscCall(PetscCalloc1(n, &sph->friction_planes));
 
@@ -291,7 +291,7 @@ PetscErrorCode SPHDestroy(SPH *sph)
   PetscCall(PetscFree(s->id_alt));
   PetscCall(PetscFree6(s->partial, s->order, s->rho, s->v_star, s->accel, s->rho_pairs));
   PetscCall(PetscFree6(s->open, s->open_surfaces, s->G_planes, s->G, s->rate, s->wall_rate));
-  PetscCall(PetscFree6(s->rhs, s->diagonal, s->scale, s->y, s->residual, s->direction));
+  PetscCall(PetscFree6(s->rhs, s->root, s->scale, s->y, s->residual, s->direction));
   PetscCall(PetscFree4(s->Adirection, s->p_tilde, s->response, s->mode));
   PetscCall(PetscFree(s->wall_excess));
   PetscCall(PetscFree(s->friction_planes));

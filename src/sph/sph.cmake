@@ -8,7 +8,7 @@ byssus_module(sph
   src/sph/sph_viscosity.c src/sph/sph_pressure.c src/sph/sph_mprgp.c src/sph/sph_closed.c src/sph/sph_gauge.c src/sph/sph_state.c
   src/sph/sph_openmp_single.c src/sph/sph_openmp_double.c ${SPH_DEVICE})
 # no floating-point status flags: square roots and selections vectorise; nothing is reordered
-set_source_files_properties(src/sph/sph_openmp_single.c src/sph/sph_openmp_double.c PROPERTIES COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
+set_source_files_properties(src/sph/sph_openmp_single.c src/sph/sph_openmp_double.c src/sph/sph_mprgp.c PROPERTIES COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
 # speed and error of the fluid alone: cmake --build build --target bench.sph
 add_executable(bench.sph EXCLUDE_FROM_ALL bench/bench_sph.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:sph>)
 target_link_libraries(bench.sph PRIVATE byssus_flags)

@@ -58,8 +58,8 @@ struct _p_SPH {
   PetscReal *wall_rate;              /* n, sum_b rho0 c share . v_b                      */
   PetscReal *friction_planes;        /* n, k of the planes [1/s]; viscous flows only     */
 
-  /* pressure solve; y = p~/scale */
-  PetscReal *rhs, *diagonal, *scale, *y, *residual, *direction, *Adirection, *p_tilde, *response;
+  /* pressure solve; y = p~/scale, root = 1/scale or 0 */
+  PetscReal *rhs, *root, *scale, *y, *residual, *direction, *Adirection, *p_tilde, *response;
   PetscReal *mode;                   /* where the power iteration for the norm starts    */
   PetscReal  norm;                   /* largest eigenvalue of S D D^T S [1]              */
   PetscReal *partial;                /* SPH_CHUNKS(n) x SPH_SUMS                         */

@@ -15,45 +15,49 @@
 #include "sph_impl.h"
 
 typedef struct {
-  PetscReal free, chopped; /* phi~ . phi and beta . beta              */
-  PetscReal residual;      /* sum of |phi + beta| / S [kg/m^3]        */
-  PetscReal count;         /* particles with pressure or wanting it   */
+  PetscReal free, chopped; /* phi~ . phi and beta . beta            */
+  PetscReal residual;      /* sum of |phi + beta| / S [kg/m^3]      */
+  PetscReal count;         /* particles with pressure or wanting it */
+  PetscReal overlap;       /* phi . A d                             */
 } Measures;
 
-/* projected gradient in its two parts; alpha is the fixed step */
-static Measures Measure(SPH sph, PetscReal alpha)
+/* y = max(0, y - step d), g -= step A d, exact while nothing is cut off, and what is then to be known of both; alpha is the fixed step */
+static Measures Move(SPH sph, PetscReal step, PetscReal alpha)
 {
-  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  PetscReal sums[4];
-  Measures  m;
+  const int        n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal  per_alpha = 1.0 / alpha, *direction = sph->direction, *Adirection = sph->Adirection, *root = sph->root;
+  PetscReal       *ys = sph->y, *gs = sph->residual, sums[5];
+  Measures         m;
 
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < chunks; c++) {
-    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0;
 
+#pragma omp simd reduction(+ : s0, s1, s2, s3, s4)
     for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-      const PetscReal y = sph->y[i], g = sph->residual[i];
+      const PetscReal y = PetscMax(0.0, ys[i] - step * direction[i]), g = gs[i] - step * Adirection[i];
+      const PetscReal free = y > 0 ? g : 0.0, chopped = y > 0 ? 0.0 : PetscMin(g, 0.0);
 
-      if (y > 0) {
-        s0 += PetscMin(y / alpha, g) * g;
-        s2 += PetscAbsReal(g) / sph->scale[i];
-        s3 += 1.0;
-      } else if (g < 0) {
-        s1 += g * g;
-        s2 -= g / sph->scale[i];
-        s3 += 1.0;
-      }
+      ys[i] = y;
+      gs[i] = g;
+      s0 += PetscMin(y * per_alpha, free) * free;
+      s1 += chopped * chopped;
+      s2 += (PetscAbsReal(free) - chopped) * root[i];
+      s3 += y > 0 || g < 0 ? 1.0 : 0.0;
+      s4 += free * Adirection[i];
     }
     s[0] = s0;
     s[1] = s1;
     s[2] = s2;
     s[3] = s3;
+    s[4] = s4;
   }
-  SPHSumPartials(sph, 4, sums);
+  SPHSumPartials(sph, 5, sums);
   m.free     = sums[0];
   m.chopped  = sums[1];
   m.residual = sums[2];
   m.count    = sums[3];
+  m.overlap  = sums[4];
   return m;
 }
 
@@ -65,8 +69,7 @@ static void SetDirection(SPH sph, PetscBool chopped)
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     const PetscReal g = sph->residual[i];
-    if (chopped) sph->direction[i] = sph->y[i] > 0 ? 0.0 : PetscMin(g, 0.0);
-    else sph->direction[i] = sph->y[i] > 0 ? g : 0.0;
+    sph->direction[i] = chopped ? (sph->y[i] > 0 ? 0.0 : PetscMin(g, 0.0)) : (sph->y[i] > 0 ? g : 0.0);
   }
 }
 
@@ -85,38 +88,29 @@ static PetscErrorCode Gradient(SPH sph, const SPHOperator *op)
 /* sums[] = g . d, d . A d, d . d; returns the longest feasible step */
 static PetscReal StepLengths(SPH sph, PetscReal sums[3])
 {
-  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  PetscReal longest = PETSC_MAX_REAL;
+  const int        n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal *ds = sph->direction, *Ads = sph->Adirection, *ys = sph->y, *gs = sph->residual;
+  PetscReal        longest = PETSC_MAX_REAL;
 
 #pragma omp parallel for schedule(static) reduction(min : longest)
   for (int c = 0; c < chunks; c++) {
-    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0, s2 = 0;
+    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0, s2 = 0, least = PETSC_MAX_REAL;
 
+#pragma omp simd reduction(+ : s0, s1, s2) reduction(min : least)
     for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-      const PetscReal d = sph->direction[i];
-      s0 += sph->residual[i] * d;
-      s1 += sph->Adirection[i] * d;
+      const PetscReal d = ds[i], step = d > 0 ? ys[i] / d : PETSC_MAX_REAL;
+      s0 += gs[i] * d;
+      s1 += Ads[i] * d;
       s2 += d * d;
-      if (d > 0 && sph->y[i] < longest * d) longest = sph->y[i] / d;
+      least = step < least ? step : least;
     }
-    s[0] = s0;
-    s[1] = s1;
-    s[2] = s2;
+    s[0]    = s0;
+    s[1]    = s1;
+    s[2]    = s2;
+    longest = PetscMin(longest, least);
   }
   SPHSumPartials(sph, 3, sums);
   return longest;
-}
-
-/* y = max(0, y - step d), g -= step A d: exact while nothing is cut off */
-static void Move(SPH sph, PetscReal step)
-{
-  const int n = (int)sph->n;
-
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; i++) {
-    sph->y[i] = PetscMax(0.0, sph->y[i] - step * sph->direction[i]);
-    sph->residual[i] -= step * sph->Adirection[i];
-  }
 }
 
 /* the projected gradient step y = max(0, y - alpha phi) */
@@ -145,31 +139,26 @@ static PetscReal Energy(SPH sph)
   return energy;
 }
 
-/* d = phi - (phi . A d / d . A d) d where y > 0, conjugate to the last direction; d = phi when that hardly descends */
-static void Conjugate(SPH sph, PetscReal dAd)
+/* d = phi - gamma d where y > 0; with gamma = phi . A d / d . A d conjugate to the last direction. d = phi when that hardly descends */
+static void Conjugate(SPH sph, PetscReal gamma)
 {
-  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  PetscReal gamma, sums[2];
+  const int        n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  const PetscReal *ys = sph->y, *gs = sph->residual;
+  PetscReal       *ds = sph->direction, sums[2];
 
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < chunks; c++) {
-    PetscReal s = 0;
-    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) s += sph->y[i] > 0 ? sph->residual[i] * sph->Adirection[i] : 0.0;
-    sph->partial[c * SPH_SUMS] = s;
-  }
-  SPHSumPartials(sph, 1, &gamma);
-  gamma /= dAd;
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < chunks; c++) {
-    PetscReal s0 = 0, s1 = 0;
+    PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0;
+
+#pragma omp simd reduction(+ : s0, s1)
     for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-      const PetscReal g   = sph->residual[i];
-      sph->direction[i] = sph->y[i] > 0 ? g - gamma * sph->direction[i] : 0.0;
-      s0 += sph->direction[i] * g;
-      s1 += sph->y[i] > 0 ? g * g : 0.0;
+      const PetscReal phi = ys[i] > 0 ? gs[i] : 0.0, d = ys[i] > 0 ? phi - gamma * ds[i] : 0.0;
+      ds[i] = d;
+      s0 += d * phi;
+      s1 += phi * phi;
     }
-    sph->partial[c * SPH_SUMS]     = s0;
-    sph->partial[c * SPH_SUMS + 1] = s1;
+    s[0] = s0;
+    s[1] = s1;
   }
   SPHSumPartials(sph, 2, sums);
   if (sums[0] < 0.1 * sums[1]) SetDirection(sph, PETSC_FALSE);
@@ -207,21 +196,38 @@ PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* after a step that may have been cut off: the gradient afresh, and on along the conjugate direction if the energy fell, else the plain
+   expansion */
+static PetscErrorCode Project(SPH sph, const SPHOperator *op, PetscReal before, PetscReal dAd, PetscReal alpha, Measures *m)
+{
+  PetscFunctionBegin;
+  PetscCall(Gradient(sph, op));
+  if (Energy(sph) < before) {
+    *m = Move(sph, 0.0, alpha);
+    Conjugate(sph, m->overlap / dAd);
+  } else {
+    Expand(sph, alpha);
+    PetscCall(Gradient(sph, op));
+    *m = Move(sph, 0.0, alpha);
+    SetDirection(sph, PETSC_FALSE);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op)
 {
   const PetscReal dt2 = op->dt * op->dt, tolerance = sph->params.tolerance * sph->params.density;
-  PetscReal       alpha;
+  PetscReal       alpha = 1.7 / (sph->norm * dt2); // a power iteration comes from below: a tenth more is safe, 2/|A| is the limit
+  Measures        m;
 
   PetscFunctionBegin;
   sph->converged = PETSC_FALSE;
   PetscCall(Gradient(sph, op));
+  m = Move(sph, 0.0, alpha);
   SetDirection(sph, PETSC_FALSE);
   for (;;) {
-    // a power iteration comes from below: a tenth more is safe, 2/|A| is the limit
-    alpha              = 1.7 / (sph->norm * dt2);
-    const Measures m   = Measure(sph, alpha);
     const PetscBool up = (PetscBool)(m.chopped > m.free);
-    PetscReal      sums[3], longest;
+    PetscReal       sums[3], longest, step;
 
     if (!(m.residual > tolerance * m.count)) {
       sph->converged = (PetscBool)isfinite(m.residual);
@@ -235,26 +241,16 @@ PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op)
 
     // the quotient of any direction bounds the norm from below
     sph->norm = PetscMax(sph->norm, sums[1] / sums[2] / dt2);
-    const PetscReal step = sums[0] / sums[1];
-
-    if (up) {
-      Move(sph, step);
-      SetDirection(sph, PETSC_FALSE);
-    } else if (step <= longest) {
-      Move(sph, step);
-      Conjugate(sph, sums[1]);
-    } else {
+    alpha     = 1.7 / (sph->norm * dt2);
+    step      = sums[0] / sums[1];
+    if (!up && step > longest) {
       const PetscReal before = Energy(sph);
-
-      Move(sph, step);
-      PetscCall(Gradient(sph, op));
-      if (Energy(sph) < before) {
-        Conjugate(sph, sums[1]);
-      } else {
-        Expand(sph, alpha);
-        PetscCall(Gradient(sph, op));
-        SetDirection(sph, PETSC_FALSE);
-      }
+      (void)Move(sph, step, alpha);
+      PetscCall(Project(sph, op, before, sums[1], alpha, &m));
+    } else {
+      m = Move(sph, step, alpha);
+      if (up) SetDirection(sph, PETSC_FALSE);
+      else Conjugate(sph, m.overlap / sums[1]);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

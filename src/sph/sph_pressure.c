@@ -44,14 +44,15 @@ static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
   const PetscReal tau   = sph->relax_time < 0 ? 10.0 * dt : sph->relax_time, relax = tau > dt ? dt / tau : 1.0;
   const PetscReal tiny  = 1e-8 * rho0 * rho0 / (sph->h * sph->h); // a diagonal of a full neighbourhood is near rho0^2/h^2
 
-  sph->table->Diagonal(&sph->loops, sph->diagonal);
+  sph->table->Diagonal(&sph->loops, sph->root);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     // a particle that touches nothing has no pressure
-    const PetscReal S = sph->diagonal[i] > tiny ? 1.0 / sqrt(sph->diagonal[i]) : 0.0;
+    const PetscReal root = sph->root[i] > tiny ? sqrt(sph->root[i]) : 0.0, S = root > 0 ? 1.0 / root : 0.0;
     const PetscReal excess = PetscMax(sph->rho[i] - rho0, sph->wall_excess[i]);
     const PetscReal b      = SPHSourceShare(excess / rho0, relax) * excess + dt * (sph->rate[i] - sph->wall_rate[i]);
 
+    sph->root[i]  = root;
     sph->scale[i] = S;
     sph->rhs[i]   = S * b;
     sph->y[i]     = S > 0 ? to_tilde * sph->p[i] / S : 0.0;
