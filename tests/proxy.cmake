@@ -1,4 +1,4 @@
 # tests of proxy
-foreach(topic kernel curvature sample)
+foreach(topic kernel curvature sample contacts update transfer input)
   byssus_test(unit/proxy/test_${topic} base sph proxy)
 endforeach()

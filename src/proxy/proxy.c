@@ -106,6 +106,7 @@ static PetscErrorCode Reserve(Proxy p, PetscInt n)
   PetscCall(PetscMalloc7(p->capacity, &p->points, 3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity,
                          &p->force, 3*p->capacity, &p->centre));
   PetscCall(PetscArrayzero(p->force, 3*p->capacity));
+  PetscCall(PetscArrayzero(p->points, p->capacity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -155,32 +156,56 @@ static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
   p->area[i] = b->weight = area;
 }
 
-/* supports: half-space, radius h/kappa-bar in the tangent plane, where a triangle has grown with its size; ellipsoid, method 4.3 */
-static void PlaceSupport(Proxy p, PetscInt i, PetscReal longest, ProxyPoint *b)
+/* unit tangent along a side of the triangle, its edge for proxies on edges; returns the side's length */
+static double PlaceTangent(const Proxy p, PetscInt i, ProxyPoint *b)
+{
+  const ProxySampling *q = &p->sampling;
+  const int            side = q->side[i] >= 0 ? q->side[i] : 0;
+  double               e[3], along, tangent;
+
+  Sub3(&p->geometry.x[3*q->nodes[3*i + (side + 1)%3]], &p->geometry.x[3*q->nodes[3*i + side]], e);
+  const double length = Norm3(e);
+  along = Dot3(e, b->n);
+  for (int k = 0; k < 3; k++) b->e[k] = e[k] - along*b->n[k];
+  tangent = Norm3(b->e);
+  for (int k = 0; k < 3; k++) b->e[k] /= tangent;
+  return length;
+}
+
+/* is the proxy on a sharp edge or corner, or on the border? */
+static PetscBool OnSharpEdge(const Proxy p, PetscInt i)
+{
+  const ProxySampling *q = &p->sampling;
+  const PetscInt       t = q->triangle[i];
+
+  if (q->kind[i] == PROXY_EDGE) return p->surface.edge_sharp[p->surface.triangle_edges[3*t + q->side[i]]];
+  for (int k = 0; k < 3; k++) {
+    if (q->weights[3*i + k] == 1.0) return p->surface.fan_sharp[p->surface.fan[3*t + k]];
+  }
+  return PETSC_FALSE;
+}
+
+/* Supports. Half-space: radius h/kappa-bar in the tangent plane, larger where the triangle has grown. Ellipsoid (method 4.3): on sharp edges
+   a = 2 d_E along the edge, b = c = h; at sharp corners a sphere; elsewhere a = b = h/kappa-bar whatever it was sampled on (the paper's
+   spheres at all vertices would leave holes where thinning has taken the proxies between them); stretched with edge and area. */
+static void PlaceSupport(Proxy p, PetscInt i, ProxyPoint *b)
 {
   const ProxySurface  *s = &p->surface;
   const ProxySampling *q = &p->sampling;
-  const double         h = p->fluid.h, R = h/q->kappa[i];
+  const double         h = p->fluid.h, R = h/q->kappa[i], length = PlaceTangent(p, i, b);
   const PetscInt       t = q->triangle[i];
+  const double         stretch = sqrt(p->geometry.area[t]/q->area0[t]);
 
   if (p->params.kernel == PROXY_KERNEL_HALF_SPACE) {
-    b->radius[0] = R*PetscMax(1.0, sqrt(p->geometry.area[t]/q->area0[t]));
-    // beyond a sharp edge a patch's neighbour must be seen as long as the patch is
-    b->radius[1] = PROXY_FRONT_FADE*h + (s->patch_sharp[s->patch[t]] ? longest : h);
+    b->radius[0] = b->radius[1] = R*PetscMax(1.0, stretch);
+    for (int k = 0; k < 8; k++) b->extent[k] = q->extent[8*i + k]*PetscMax(1.0, stretch);
     return;
   }
-  double       e[3], l;
-  const int    side = q->side[i] >= 0 ? q->side[i] : 0;
-  const double *v0 = &p->geometry.x[3*q->nodes[3*i + side]], *v1 = &p->geometry.x[3*q->nodes[3*i + (side + 1)%3]];
-  Sub3(v1, v0, e);
-  l = Norm3(e);
-  const double along = Dot3(e, b->n);
-  for (int k = 0; k < 3; k++) e[k] -= along*b->n[k];
-  const double tangent = Norm3(e);
-  for (int k = 0; k < 3; k++) b->e[k] = e[k]/tangent;
-  b->radius[0] = b->radius[1] = h;
-  if (q->kind[i] == PROXY_EDGE) b->radius[0] = R*l/q->edge0[s->triangle_edges[3*t + side]];
-  if (q->kind[i] == PROXY_FACE) b->radius[0] = b->radius[1] = R*sqrt(p->geometry.area[t]/q->area0[t]);
+  b->radius[0] = b->radius[1] = R*stretch;
+  if (OnSharpEdge(p, i)) {
+    b->radius[0] = q->kind[i] == PROXY_EDGE ? R*length/q->edge0[s->triangle_edges[3*t + q->side[i]]] : h;
+    b->radius[1] = h;
+  }
   b->inset = p->inset;
   for (int k = 0; k < 3; k++) b->x[k] -= p->inset*b->n[k];
 }
@@ -188,17 +213,12 @@ static void PlaceSupport(Proxy p, PetscInt i, PetscReal longest, ProxyPoint *b)
 static PetscErrorCode PlaceProxies(Proxy p)
 {
   const ProxySampling *q = &p->sampling;
-  PetscReal            longest = 0.0;
 
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < q->n; i++) PlacePoint(p, i, &p->points[i]);
-  for (PetscInt i = 0; i < q->n; i++) {
-    const PetscInt t = q->triangle[i];
-    longest = PetscMax(longest, p->fluid.h/q->kappa[i]*PetscMax(1.0, PetscSqrtReal(p->geometry.area[t]/q->area0[t])));
-  }
 #pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < q->n; i++) PlaceSupport(p, i, longest, &p->points[i]);
+  for (PetscInt i = 0; i < q->n; i++) PlaceSupport(p, i, &p->points[i]);
   if (p->params.kernel == PROXY_KERNEL_ELLIPSOID) PetscCall(ProxyEllipsoidVolumes(p->fluid.kernel, p->fluid.h, p->factor, q->n, p->points));
 
   // nodal shares of the area
@@ -231,8 +251,11 @@ static PetscErrorCode Sample(Proxy p)
   PetscCall(PetscLogEventBegin(EventSample, 0, 0, 0, 0));
   PetscCall(ProxySample(&p->surface, &p->geometry, &p->params, &p->fluid, &p->sampling));
   PetscCall(Reserve(p, p->sampling.n));
-  for (PetscInt i = 0; i < p->sampling.n; i++) PlacePoint(p, i, &p->points[i]);
-  ProxyOffsets(&p->surface, &p->geometry, p->points, &p->sampling);
+  for (PetscInt i = 0; i < p->sampling.n; i++) {
+    PlacePoint(p, i, &p->points[i]);
+    (void)PlaceTangent(p, i, &p->points[i]);
+  }
+  PetscCall(ProxyMeasureParts(&p->surface, &p->geometry, p->points, &p->sampling));
   p->n_samplings++;
   PetscCall(PetscLogEventEnd(EventSample, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -120,15 +120,29 @@ BY_HD double ProxyCopulaTheta(double cosine, double *slope)
   return k*k;
 }
 
+/* smooth step of coverage over what must be covered: PROXY_RIM_COVERAGE, less for a particle far off, which sees only the proxies right
+   beneath it (over the outer half of h) */
+BY_HD ProxyDual ProxyCovered(double h, const ProxyDual *coverage, const ProxyDual *z)
+{
+  const double sign = z->v < 0.0 ? -1.0 : 1.0;
+  double       slope;
+  const double part = ProxySmoothStep((h - sign*z->v)/(0.5*h), &slope), need = PROXY_RIM_COVERAGE*part;
+
+  if (coverage->v >= need) return ProxyDualOf(1.0);
+  const double need_slope = -sign*PROXY_RIM_COVERAGE*slope/(0.5*h), value = ProxySmoothStep(coverage->v/need, &slope);
+  return ProxyDualOf2(value, slope/need, coverage, -slope*coverage->v/(need*need)*need_slope, z);
+}
+
 /* The inside of a node ends where its proxies end: a particle behind it (over 0.2 h) whose tangent plane they do not cover is not in
    the body but past a bend, or beside a patch that is smaller than the kernel. */
 BY_HD void ProxyTrust(double h, ProxyNode *a)
 {
-  double       slope_c, slope_z;
-  const double covered = ProxySmoothStep(a->coverage.v/PROXY_RIM_COVERAGE, &slope_c), behind = ProxySmoothStep(-a->z.v/(0.2*h), &slope_z);
+  double       slope;
+  const double behind = ProxySmoothStep(-a->z.v/(0.2*h), &slope);
 
-  if (covered == 1.0 || behind == 0.0) return;
-  const ProxyDual trust = ProxyDualOf2(1.0 - (1.0 - covered)*behind, slope_c*behind/PROXY_RIM_COVERAGE, &a->coverage, (1.0 - covered)*slope_z/(0.2*h), &a->z);
+  if (behind == 0.0) return;
+  const ProxyDual covered = ProxyCovered(h, &a->coverage, &a->z);
+  const ProxyDual trust = ProxyDualOf2(1.0 - (1.0 - covered.v)*behind, behind, &covered, (1.0 - covered.v)*slope/(0.2*h), &a->z);
   a->y = ProxyDualTimes(&a->y, &trust);
 }
 
@@ -313,12 +327,9 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
 
   // open rims end where the proxies of all patches together no longer cover the particle's tangent plane
   for (int p = 0; p < n; p++) {
-    if (patch[p].open && coverage.v < PROXY_RIM_COVERAGE) {
-      double          slope;
-      const double    rim = ProxySmoothStep(coverage.v/PROXY_RIM_COVERAGE, &slope);
-      const ProxyDual cut = ProxyDualOf2(rim, slope/PROXY_RIM_COVERAGE, &coverage, 0.0, &coverage);
-      leaf[p].y = ProxyDualTimes(&leaf[p].y, &cut);
-    }
+    if (!patch[p].open) continue;
+    const ProxyDual cut = ProxyCovered(h, &coverage, &leaf[p].z);
+    if (cut.v < 1.0) leaf[p].y = ProxyDualTimes(&leaf[p].y, &cut);
   }
 
   ProxyCotree(n, h, s, convex, concave, leaf, &total);

@@ -81,33 +81,29 @@ static inline void ImageShift(const ProxyFluid *fluid, const double base[3], int
   shift[2] = base[2] + (image/9 - 1)*Period(fluid, 2);
 }
 
-/* Support of a proxy as a cylinder around its normal: middle, half height and radius [m]. The osculating paraboloid adds up to
+/* Support of a proxy as a cylinder around its normal: half height and radius [m]. The osculating paraboloid adds up to
    1/2 kappa R^2 to the height. */
-static void Support(const Proxy p, const ProxyPoint *b, double middle[3], double *half, double *radius)
+static void Support(const Proxy p, const ProxyPoint *b, double *half, double *radius)
 {
   const double h = p->fluid.h;
-  double       up = 0.0;
 
   if (p->params.kernel == PROXY_KERNEL_ELLIPSOID) {
     *half   = h;
     *radius = PetscMax(b->radius[0], b->radius[1]);
   } else {
-    const double bend = 0.5*b->radius[0]*b->radius[0]*sqrt(b->S[0]*b->S[0] + b->S[1]*b->S[1] + b->S[2]*b->S[2] + 2.0*(b->S[3]*b->S[3] + b->S[4]*b->S[4] + b->S[5]*b->S[5]));
-    up      = 0.5*(b->radius[1] - h);
-    *half   = 0.5*(b->radius[1] + h) + bend;
-    *radius = b->radius[0];
+    double extent = 0.0;
+    for (int k = 0; k < 8; k++) extent = PetscMax(extent, b->extent[k]);
+    // an octagon's corners are 8 % farther than its sides
+    *radius = PetscMin(b->radius[0], 1.083*extent + h);
+    *half   = h + fabs(b->offset) + 0.5*(*radius)*(*radius)*sqrt(b->S[0]*b->S[0] + b->S[1]*b->S[1] + b->S[2]*b->S[2] + 2.0*(b->S[3]*b->S[3] + b->S[4]*b->S[4] + b->S[5]*b->S[5]));
   }
-  for (int k = 0; k < 3; k++) middle[k] = b->x[k] + up*b->n[k];
 }
 
-static void SetReach(const ProxyPoint *b, const double middle[3], double half, double radius, ProxyReach *reach)
+static void SetReach(const ProxyPoint *b, double half, double radius, ProxyReach *reach)
 {
-  const double up = (middle[0] - b->x[0])*b->n[0] + (middle[1] - b->x[1])*b->n[1] + (middle[2] - b->x[2])*b->n[2];
-
   for (int k = 0; k < 3; k++) reach->x[k] = b->x[k], reach->n[k] = b->n[k];
   reach->radius2 = radius*radius*(1.0 + 1e-12);
-  reach->low     = up - half;
-  reach->high    = up + half;
+  reach->half    = half;
 }
 
 /* range of cells of one image of a support; empty: 0 */
@@ -130,13 +126,13 @@ static void SizeCells(const Proxy p, ProxyCells *c)
 
   for (int k = 0; k < 3; k++) c->lo[k] = PETSC_MAX_REAL, hi[k] = -PETSC_MAX_REAL;
   for (PetscInt i = 0; i < p->sampling.n; i++) {
-    double middle[3], half, radius;
-    Support(p, &p->points[i], middle, &half, &radius);
-    SetReach(&p->points[i], middle, half, radius, &p->reach[i]);
+    double half, radius;
+    Support(p, &p->points[i], &half, &radius);
+    SetReach(&p->points[i], half, radius, &p->reach[i]);
     for (int k = 0; k < 3; k++) {
       const double n = p->points[i].n[k], e = fabs(n)*half + sqrt(PetscMax(0.0, 1.0 - n*n))*radius;
-      c->lo[k] = PetscMin(c->lo[k], middle[k] - e);
-      hi[k]    = PetscMax(hi[k], middle[k] + e);
+      c->lo[k] = PetscMin(c->lo[k], p->points[i].x[k] - e);
+      hi[k]    = PetscMax(hi[k], p->points[i].x[k] + e);
     }
   }
   for (int k = 0; k < 3; k++) {
@@ -159,8 +155,8 @@ static void VisitCells(const Proxy p, ProxyCells *c, PetscInt *entry)
   BaseShift(p, base);
   for (PetscInt i = 0; i < p->sampling.n; i++) {
     const double *n = p->points[i].n, corner = 0.5*sqrt(3.0)*c->cell;
-    double        middle[3], half, radius;
-    Support(p, &p->points[i], middle, &half, &radius);
+    double        half, radius;
+    Support(p, &p->points[i], &half, &radius);
     for (int image = 0; image < 27; image++) {
       double   shift[3], at[3];
       PetscInt lo[3], hi[3];
@@ -168,7 +164,7 @@ static void VisitCells(const Proxy p, ProxyCells *c, PetscInt *entry)
       for (int k = 0, m = image; k < 3; k++, m /= 3) skip |= m%3 != 1 && Period(&p->fluid, k) == 0.0;
       if (skip) continue;
       ImageShift(&p->fluid, base, image, shift);
-      for (int k = 0; k < 3; k++) at[k] = middle[k] + shift[k];
+      for (int k = 0; k < 3; k++) at[k] = p->points[i].x[k] + shift[k];
       if (!CellRange(c, n, at, half, radius, lo, hi)) continue;
       for (PetscInt z = lo[2]; z <= hi[2]; z++) {
         for (PetscInt y = lo[1]; y <= hi[1]; y++) {
@@ -256,7 +252,7 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
 static inline int OutOfReach(const ProxyReach *reach, const double r[3])
 {
   const double up = Dot3(reach->n, r);
-  return Dot3(r, r) - up*up > reach->radius2 || up < reach->low || up > reach->high;
+  return Dot3(r, r) - up*up > reach->radius2 || fabs(up) > reach->half;
 }
 
 /* gather the pairs of a particle; returns their number, *n_slots patches among them, sums of weights by slot, whether the mean height is
@@ -451,7 +447,7 @@ static PetscErrorCode Collect(Proxy p, PetscInt n_chunks, SPHContacts *out)
     at[2*i + 2] = at[2*i] + chunks[i].n_touched;
     at[2*i + 3] = at[2*i + 1] + chunks[i].n_pairs;
   }
-#pragma omp parallel for schedule(dynamic, 4)
+#pragma omp parallel for schedule(dynamic, 4) if(n_chunks > 1)
   for (PetscInt i = 0; i < n_chunks; i++) {
     const Chunk *k = &chunks[i];
     PetscInt     pair = at[2*i + 1];
@@ -499,7 +495,7 @@ PetscErrorCode ProxyFindContacts(Proxy p, PetscInt n, const PetscReal x[], SPHCo
     p->n_chunks = n_chunks;
   }
   BaseShift(p, base);
-#pragma omp parallel reduction(&& : good)
+#pragma omp parallel reduction(&& : good) if(n_chunks > 1)
   {
     Touch  *touch = (Touch *)malloc(sizeof(Touch)*(size_t)(p->cells.longest + 1));
     double(*grad)[3] = (double(*)[3])malloc(3*sizeof(double)*(size_t)(p->cells.longest + 1));

@@ -31,6 +31,7 @@ typedef struct {
   PetscBool *patch_open;     /* n_patches: has an open border                                              */
   PetscBool *patch_sharp;    /* n_patches: has a sharp edge                                                */
   PetscInt  *fan;            /* n_triangles x 3: vertex fan of each corner (a vertex, once per smooth side) */
+  PetscBool *fan_sharp;      /* n_fans: the fan ends at sharp edges                                         */
   PetscInt  *fan_start, *fan_corner; /* corners 3 t + i of each fan                                        */
 } ProxySurface;
 
@@ -54,14 +55,14 @@ typedef struct {
   PetscInt  *part_start, *part_triangle; /* which triangles' area each proxy stands for ...                */
   PetscReal *part;                       /* ... and which fraction of it                                   */
   PetscInt  *piece_start, *piece_owner;  /* triangles cut into m^2 pieces (row by row), the proxy of each  */
-  PetscReal *offset;                     /* n [m], see ProxyPoint                                          */
+  PetscReal *offset, *extent;            /* n, n x 8 [m], see ProxyPoint                                   */
   PetscReal *area0, *edge0;              /* triangle areas [m^2], edge lengths [m] when sampled            */
   PetscReal *x;                          /* n_nodes x 3 [m], where the surface was when sampled            */
 } ProxySampling;
 
-/* what rejects most proxies of a cell: position, normal, squared tangential radius, range of n.r */
+/* what rejects most proxies of a cell: position, normal, squared tangential radius, bound of |n.r| */
 typedef struct {
-  double x[3], n[3], radius2, low, high;
+  double x[3], n[3], radius2, half;
 } ProxyReach;
 
 /* cells over the supports: the proxies that may touch a particle in a cell */
@@ -123,8 +124,8 @@ void           ProxyShapeBound(PetscReal max_curvature, double S[6]);
 /* proxy_sample.c */
 PetscErrorCode ProxySample(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyParams *params, const ProxyFluid *fluid,
                            ProxySampling *sampling);
-/* offsets of `points` from the surface that they stand for, into sampling->offset */
-void           ProxyOffsets(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyPoint points[], ProxySampling *sampling);
+/* offsets and extents of `points` from the surface that they stand for, into the sampling */
+PetscErrorCode ProxyMeasureParts(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyPoint points[], ProxySampling *sampling);
 PetscErrorCode ProxySamplingDestroy(ProxySampling *sampling);
 
 /* proxy_contacts.c */

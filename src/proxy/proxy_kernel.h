@@ -12,8 +12,8 @@
 #define PROXY_BACK_FADE 0.15
 /* the ellipsoid kernel is not normalised: it fades to nothing over this part of h behind the surface */
 #define PROXY_ELLIPSOID_FADE 0.25
-/* in front, weights end over this part of h before z_max; nothing acts beyond z = h anyway */
-#define PROXY_FRONT_FADE 0.25
+/* weights end at distance h from the part of the surface that the proxy stands for, over this part of h */
+#define PROXY_FAR_FADE 0.25
 /* the osculating surface is used from its own side only: weights end where 1 + c z0 falls from this to 0 (a ball's equator) */
 #define PROXY_SIDE_FADE 0.5
 
@@ -23,9 +23,11 @@ typedef struct {
   double n[3];        /* outward unit normal                                                                            */
   double S[6];        /* shape operator [1/m]                                                                           */
   double bend;        /* c = tr S^3/tr S^2 [1/m], ProxyShapeBend(): the curvature of spheres and cylinders               */
-  double e[3];        /* ellipsoid: unit tangent of radius a                                                            */
+  double e[3];        /* unit tangent; ellipsoid: of radius a                                                           */
   double offset;      /* mean height [m] of the surface that it stands for above its osculating surface                 */
-  double radius[2];   /* half-space: tangential radius h/kappa-bar [m], z_max [m]; ellipsoid: a, b [m] (c = h)          */
+  double radius[2];   /* half-space: tangential radius h/kappa-bar [m], unused; ellipsoid: a, b [m] (c = h)             */
+  double extent[8];   /* half-space: how far its part of the surface reaches from x in the directions e, m, (e + m)/sqrt 2,
+                         (e - m)/sqrt 2, m = n x e, and then in the opposite ones [m]                                   */
   double weight;      /* half-space: area [m^2]; ellipsoid: volume Psi/rho0 [m^3] with the factor                       */
   double inset;       /* ellipsoid: depth of x beneath the surface [m]                                                  */
 } ProxyPoint;
@@ -148,48 +150,65 @@ BY_HD void ProxyShapeAddTurned(const double S[6], const double from[3], const do
   }
 }
 
-/* Half-space profile of one pair (method 4.4): t = r - (n.r) n, w = A w2(|t|, R) cut(z), height z of ProxyHeight(),
+/* Distance in the tangent plane of t from the octagon around the part of the surface that a proxy stands for; 0 inside; direction in grad */
+BY_HD double ProxyBeyond(const ProxyPoint *b, const double t[3], double grad[3])
+{
+  const double diagonal = 0.70710678118654752440;
+  double       m[3], beyond = 0.0, u = 0.0, v = 0.0;
+
+  Cross3(b->n, b->e, m);
+  const double x = Dot3(b->e, t), y = Dot3(m, t), c[4] = {x, y, diagonal*(x + y), diagonal*(x - y)};
+  for (int k = 0; k < 8; k++) {
+    const double sign = k < 4 ? 1.0 : -1.0, d = sign*c[k & 3] - b->extent[k];
+    if (d <= beyond) continue;
+    beyond = d;
+    u = sign*((k & 3) == 0 ? 1.0 : (k & 3) == 1 ? 0.0 : diagonal);
+    v = sign*((k & 3) == 0 ? 0.0 : (k & 3) == 1 ? 1.0 : (k & 3) == 2 ? diagonal : -diagonal);
+  }
+  for (int k = 0; k < 3; k++) grad[k] = u*b->e[k] + v*m[k];
+  return beyond;
+}
+
+/* Half-space profile of one pair (method 4.4): t = r - (n.r) n, w = A w2(|t|, R) fades, height z of ProxyHeight(),
      lambda_H = lambda(z) - 1/2 H_z h^2 K(z),   H_z = H/(1 + c z), H = tr S/2
    H_z is the mean curvature of the parallel surface through the particle. For a ball of radius 1/H this is the exact part of the kernel
    in the ball (integrate 2 pi r^2 W (1 - (D^2 + r^2 - 1/H^2)/(2 D r)) over r, D = 1/H + z); the method's H is its first order.
-   All gradients exact. Returns 0 when the pair does not touch. */
+   Three fades make the weights local: behind the surface; past the equator of the osculating ball; and where the part of the surface
+   that the proxy stands for is h away. On a plane they all cancel, whatever they are. All gradients exact. Returns 0 when the pair does
+   not touch. */
 BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const double r[3], ProxyPair *pair)
 {
-  const double z0 = Dot3(b->n, r), R = b->radius[0], z_max = b->radius[1], H = 0.5*(b->S[0] + b->S[1] + b->S[2]);
+  const double z0 = Dot3(b->n, r), R = b->radius[0], H = 0.5*(b->S[0] + b->S[1] + b->S[2]);
   const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]}, t2 = Dot3(t, t);
   const double side = (1.0 + b->bend*z0)/PROXY_SIDE_FADE;
-  double       F, cut = 1.0, cut_slope = 0.0, w, z, d, slope, K;
+  double       F, w, z, d, slope, K, out[3];
 
   if (t2 >= R*R || side <= 0.0) return 0;
   z = ProxyHeight(b, z0, t, pair->grad_z) - b->offset;
-  if (z <= -h || z >= z_max) return 0;
+  const double beyond = ProxyBeyond(b, t, out), far2 = z*z + beyond*beyond;
+  if (far2 >= h*h) return 0;
 
-  // weight in the tangent plane, faded behind the surface and far in front of it
+  // weight in the tangent plane, and its fades
   w = ProxyKernel2D(sqrt(t2), R, &F);
-  if (z < 0.0) {
-    const double a = z / (PROXY_BACK_FADE*h);
-    cut       = exp(-a*a);
-    cut_slope = -2.0*a / (PROXY_BACK_FADE*h) * cut;
-  } else if (z > z_max - PROXY_FRONT_FADE*h) {
-    cut       = ProxySmoothStep((z_max - z) / (PROXY_FRONT_FADE*h), &slope);
-    cut_slope = -slope / (PROXY_FRONT_FADE*h);
-  }
-  const double near_side = ProxySmoothStep(side, &slope), side_slope = w*slope*b->bend/PROXY_SIDE_FADE;
-  w *= near_side, F *= near_side;
+  const double near_side = ProxySmoothStep(side, &slope), side_slope = slope*b->bend/PROXY_SIDE_FADE;
+  const double back = z < 0.0 ? z/(PROXY_BACK_FADE*h) : 0.0, behind = z < 0.0 ? exp(-back*back) : 1.0;
+  const double far = sqrt(far2), end = ProxySmoothStep((h - far)/(PROXY_FAR_FADE*h), &slope);
+  const double end_slope = far > 0.0 ? -slope/(PROXY_FAR_FADE*h*far) : 0.0, behind_slope = -2.0*back/(PROXY_BACK_FADE*h)*behind;
 
   // profile above the osculating surface; K' = -2 z A/h^2
-  const double bend = 1.0/(1.0 + b->bend*z), Hz = H*bend;
+  const double bend = 1.0/(1.0 + b->bend*z), Hz = H*bend, A = b->weight;
   d            = z < 0.0 ? -z : z;
   K            = H != 0.0 ? 0.5*h*h*ProxyPlaneMoment(kernel, d, h) : 0.0;
   pair->z      = z;
-  pair->w      = b->weight * w * cut;
-  pair->cover  = b->weight * w;
+  pair->cover  = A*w*near_side;
+  pair->w      = A*w*near_side*behind*end;
   pair->lambda = SPHHalfSpace(kernel, z, h) - Hz*K;
   slope        = -SPHPlaneDensity(kernel, d, h) * (1.0 - Hz*z) + K*Hz*bend*b->bend;
   for (int k = 0; k < 3; k++) {
+    const double side_k = F*near_side*t[k] + w*side_slope*b->n[k];
     pair->grad_lambda[k] = slope * pair->grad_z[k];
-    pair->grad_cover[k]  = b->weight * (F*t[k] + side_slope*b->n[k]);
-    pair->grad_w[k]      = b->weight * (F*cut*t[k] + w*cut_slope*pair->grad_z[k] + side_slope*cut*b->n[k]);
+    pair->grad_cover[k]  = A*side_k;
+    pair->grad_w[k]      = A*(side_k*behind*end + w*near_side*(behind_slope*end*pair->grad_z[k] + behind*end_slope*(z*pair->grad_z[k] + beyond*out[k])));
   }
   return 1;
 }

@@ -291,14 +291,38 @@ static double PieceHeight(const ProxySurface *s, const PetscReal x[], PetscInt t
   return sum;
 }
 
-/* Height of the surface that each proxy stands for above its osculating surface: a facetted ball lies inside the ball of its vertices,
-   and it is the facets that displace the fluid. points[] need position (on the surface), normal and shape. */
-void ProxyOffsets(const ProxySurface *s, const ProxyGeometry *g, const ProxyPoint points[], ProxySampling *q)
+/* how far the corners of a piece reach from proxy b in its eight directions */
+static void PieceExtent(const ProxySurface *s, const PetscReal x[], PetscInt t, const PetscReal centre[3], PetscInt m, const ProxyPoint *b,
+                        PetscReal extent[8])
 {
-  PetscReal *area = NULL;
+  double side[3];
 
-  if (PetscCalloc1(q->n, &area)) return;
-  for (PetscInt i = 0; i < q->n; i++) q->offset[i] = 0.0;
+  Cross3(b->n, b->e, side);
+  for (int k = 0; k < 3; k++) {
+    PetscReal w[3] = {centre[0] - 1.0/(3.0*m), centre[1] - 1.0/(3.0*m), centre[2] - 1.0/(3.0*m)};
+    double    p[3], r[3];
+    w[k] += 1.0/m;
+    PointOf(s, x, t, w, p);
+    Sub3(p, b->x, r);
+    const double u = Dot3(b->e, r), v = Dot3(side, r), c[4] = {u, v, PetscSqrtReal(0.5)*(u + v), PetscSqrtReal(0.5)*(u - v)};
+    for (int d = 0; d < 4; d++) {
+      extent[d]     = PetscMax(extent[d], c[d]);
+      extent[4 + d] = PetscMax(extent[4 + d], -c[d]);
+    }
+  }
+}
+
+/* The part of the surface that each proxy stands for. Its mean height above the osculating surface: a facetted ball lies inside the ball of
+   its vertices, and it is the facets that displace the fluid. And how far it reaches from the proxy. points[] need position (on the
+   surface), normal, tangent and shape. */
+PetscErrorCode ProxyMeasureParts(const ProxySurface *s, const ProxyGeometry *g, const ProxyPoint points[], ProxySampling *q)
+{
+  PetscReal *area;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(q->n, &area));
+  PetscCall(PetscArrayzero(q->offset, q->n));
+  PetscCall(PetscArrayzero(q->extent, 8*q->n));
   for (PetscInt t = 0; t < s->n_triangles; t++) {
     const PetscInt  m = (PetscInt)floor(sqrt((double)(q->piece_start[t + 1] - q->piece_start[t])) + 0.5);
     const PetscReal a = g->area[t]/((PetscReal)m*m);
@@ -310,13 +334,15 @@ void ProxyOffsets(const ProxySurface *s, const ProxyGeometry *g, const ProxyPoin
           PetscReal      b[3];
           PieceCentre(m, i, j, down, b);
           q->offset[owner] += a*PieceHeight(s, g->x, t, b, down ? -m : m, &points[owner]);
+          PieceExtent(s, g->x, t, b, down ? -m : m, &points[owner], &q->extent[8*owner]);
           area[owner] += a;
         }
       }
     }
   }
   for (PetscInt i = 0; i < q->n; i++) q->offset[i] = area[i] > 0.0 ? q->offset[i]/area[i] : 0.0;
-  (void)PetscFree(area);
+  PetscCall(PetscFree(area));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Store(const ProxySurface *s, const ProxyGeometry *g, const Candidates *list, PetscInt n_parts, const Part parts[],
@@ -329,8 +355,10 @@ static PetscErrorCode Store(const ProxySurface *s, const ProxyGeometry *g, const
   PetscCall(PetscMalloc6(n, &sampling->triangle, 3*n, &sampling->nodes, 3*n, &sampling->weights, n, &sampling->kappa, n, &sampling->kind, n,
                          &sampling->side));
   PetscCall(PetscMalloc3(n + 2, &sampling->part_start, n_parts, &sampling->part_triangle, n_parts, &sampling->part));
-  PetscCall(PetscMalloc4(s->n_triangles, &sampling->area0, s->n_edges, &sampling->edge0, 3*s->n_nodes, &sampling->x, n, &sampling->offset));
+  PetscCall(PetscMalloc5(s->n_triangles, &sampling->area0, s->n_edges, &sampling->edge0, 3*s->n_nodes, &sampling->x, n, &sampling->offset, 8*n,
+                         &sampling->extent));
   PetscCall(PetscArrayzero(sampling->offset, n));
+  PetscCall(PetscArrayzero(sampling->extent, 8*n));
   for (PetscInt i = 0; i < n; i++) {
     const Candidate *c = &list->c[i];
     sampling->triangle[i] = c->triangle;
@@ -392,7 +420,7 @@ PetscErrorCode ProxySamplingDestroy(ProxySampling *p)
   PetscFunctionBegin;
   PetscCall(PetscFree6(p->triangle, p->nodes, p->weights, p->kappa, p->kind, p->side));
   PetscCall(PetscFree3(p->part_start, p->part_triangle, p->part));
-  PetscCall(PetscFree4(p->area0, p->edge0, p->x, p->offset));
+  PetscCall(PetscFree5(p->area0, p->edge0, p->x, p->offset, p->extent));
   PetscCall(PetscFree(p->piece_start));
   PetscCall(PetscFree(p->piece_owner));
   PetscCall(PetscMemzero(p, sizeof(*p)));

@@ -191,7 +191,7 @@ static PetscInt FindRoot(PetscInt parent[], PetscInt i)
   return i;
 }
 
-/* A patch of less than h^2/4 is noise at the kernel's scale (a fold of a scanned mesh): it joins the neighbour with which it shares the
+/* A patch of less than 0.03 h^2 is noise at the kernel's scale (a fold of a scanned mesh): it joins the neighbour with which it shares the
    longest border, so that its plane does not act as a half space. */
 static PetscErrorCode AbsorbSmallPatches(PetscReal h, ProxySurface *s)
 {
@@ -210,7 +210,7 @@ static PetscErrorCode AbsorbSmallPatches(PetscReal h, ProxySurface *s)
   }
   for (PetscInt p = 0; p < s->n_patches; p++) {
     PetscInt best = -1;
-    if (area[p] >= 0.25*h*h) continue;
+    if (area[p] >= 0.03*h*h) continue;
     for (int pass = 0; pass < 2; pass++) { // measure the borders, then open the longest
       for (PetscInt e = 0; e < s->n_edges; e++) {
         const PetscInt t = s->edge_triangles[2*e], u = s->edge_triangles[2*e + 1];
@@ -263,6 +263,10 @@ static PetscErrorCode BuildFans(ProxySurface *s)
   }
   PetscCall(PetscFree(parent));
 
+  PetscCall(PetscCalloc1(s->n_fans, &s->fan_sharp));
+  for (PetscInt i = 0; i < n; i++) {
+    if (s->edge_sharp[s->triangle_edges[i]]) s->fan_sharp[s->fan[i]] = s->fan_sharp[s->fan[3*(i/3) + (i + 1)%3]] = PETSC_TRUE;
+  }
   PetscCall(PetscCalloc1(s->n_fans + 1, &s->fan_start));
   PetscCall(PetscMalloc1(s->n_fans, &at));
   for (PetscInt i = 0; i < n; i++) s->fan_start[s->fan[i] + 1]++;
@@ -300,6 +304,7 @@ PetscErrorCode ProxySurfaceDestroy(ProxySurface *s)
   PetscCall(PetscFree2(s->patch_open, s->patch_sharp));
   PetscCall(PetscFree2(s->fan, s->fan_corner));
   PetscCall(PetscFree(s->fan_start));
+  PetscCall(PetscFree(s->fan_sharp));
   PetscCall(PetscMemzero(s, sizeof(*s)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,8 +28,9 @@ static ProxyPoint Point(double k1, double k2)
   b.S[0]      = k1;
   b.S[1]      = k2;
   b.bend      = ProxyShapeBend(b.S);
-  b.radius[0] = 1.0, b.radius[1] = 1.25;
+  b.radius[0] = b.radius[1] = 1.0;
   b.weight    = 0.3;
+  for (int k = 0; k < 8; k++) b.extent[k] = 0.3 + 0.02*k;
   return b;
 }
 

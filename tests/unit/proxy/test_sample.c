@@ -98,13 +98,13 @@ static void sharp_edges_have_one_proxy_per_side(void **state)
   ShapeFree(&s);
 }
 
-/* a fold of less than h^2/4 does not become a half space of its own */
+/* a fold of less than 0.03 h^2 does not become a half space of its own */
 static void tiny_patches_join_their_neighbours(void **state)
 {
-  Shape s = ShapePlate(3, 3, 40, 40, 0);
+  Shape s = ShapePlate(3, 3, 100, 100, 0);
   Proxy p;
   (void)state;
-  s.x[3*(20*41 + 20) + 2] = 0.2; // a spike of one vertex, 0.15 wide
+  s.x[3*(50*101 + 50) + 2] = 0.08; // a spike of one vertex, 0.06 wide
   p = FixtureProxy(&s, 1.0, PROXY_KERNEL_HALF_SPACE, 1.0, NULL);
   assert_int_equal(p->surface.n_patches, 1);
   assert_petsc(ProxyDestroy(&p));
