@@ -10,14 +10,13 @@
 
 #define COUPLER_MAX_SURFACES (2 * BY_NAMES_MAX)
 
-/* interface response of a body: mean velocity over the step = z solves (M + beta dt^2 K) z = c F, c = dt/2 (1 + 1/n) */
+/* interface response of a body: mean velocity over the step = z solves (M + beta dt^2 K) z = dt/2 F */
 typedef struct {
   Mat       tangent, matrix;
   KSP       ksp;
   Vec       rhs, solution;
   PetscReal dt;     /* [s] step for which the matrix was made; 0 = none yet */
   PetscReal dt_step; /* [s] the current step                                 */
-  PetscReal factor;  /* c [s] of the current step                            */
   PetscInt  age;     /* steps since the matrix was made                      */
 } CouplerResponse;
 

@@ -5,8 +5,8 @@ static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
 {
   Vec              vec[3];
   const PetscReal *values;
-  PetscReal        sums[5], time;
-  TLEDStats        stats;
+  PetscReal        sums[4], *state;
+  PetscInt         n_state;
   const char      *names[] = {"displacement", "velocity"};
   char             name[2 * BY_NAME_MAX];
 
@@ -20,22 +20,26 @@ static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
   }
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/force", s->name));
   ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, s->force));
-  PetscCall(TLEDGetStats(s->tled, &stats));
-  PetscCall(TLEDGetTime(s->tled, &time));
-  sums[0] = time;
-  sums[1] = s->work_fluid;
-  sums[2] = s->work_solid;
-  sums[3] = s->n_substeps_sum;
-  sums[4] = s->n_proxies_sum;
+  PetscCall(TLEDGetState(s->tled, &n_state, NULL));
+  PetscCall(PetscMalloc1(n_state, &state));
+  PetscCall(TLEDGetState(s->tled, &n_state, state));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/state", s->name));
+  ByCall(CheckpointWriteReal(file, name, n_state, state));
+  PetscCall(PetscFree(state));
+  sums[0] = s->work_fluid;
+  sums[1] = s->work_solid;
+  sums[2] = s->n_substeps_sum;
+  sums[3] = s->n_proxies_sum;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
-  ByCall(CheckpointWriteReal(file, name, 5, sums));
+  ByCall(CheckpointWriteReal(file, name, 4, sums));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
 {
   Vec         vec[3];
-  PetscReal  *values, sums[5];
+  PetscReal  *values, sums[4], *state;
+  PetscInt    n_state;
   const char *names[] = {"displacement", "velocity"};
   char        name[2 * BY_NAME_MAX];
 
@@ -53,12 +57,17 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
   PetscCall(PetscArraycpy(values, s->force, 3 * s->n_nodes));
   PetscCall(VecRestoreArrayWrite(vec[2], &values));
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
-  ByCall(CheckpointReadReal(file, name, 5, sums));
-  PetscCall(TLEDSetTime(s->tled, sums[0]));
-  s->work_fluid     = sums[1];
-  s->work_solid     = sums[2];
-  s->n_substeps_sum = sums[3];
-  s->n_proxies_sum  = sums[4];
+  ByCall(CheckpointReadReal(file, name, 4, sums));
+  s->work_fluid     = sums[0];
+  s->work_solid     = sums[1];
+  s->n_substeps_sum = sums[2];
+  s->n_proxies_sum  = sums[3];
+  PetscCall(TLEDGetState(s->tled, &n_state, NULL));
+  PetscCall(PetscMalloc1(n_state, &state));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/state", s->name));
+  ByCall(CheckpointReadReal(file, name, n_state, state));
+  PetscCall(TLEDSetState(s->tled, n_state, state));
+  PetscCall(PetscFree(state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

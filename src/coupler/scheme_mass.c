@@ -1,10 +1,10 @@
 /* scheme_mass.c - added mass inside the pressure solve (method 5.3), for flexible bodies.
 
-   Over a step dt the body answers a change of its nodal forces f with a change of its mean velocity z. For a rigid body of mass M that
-   takes n leapfrog substeps, z = c f/M with c = dt/2 (1 + 1/n). For an elastic one, mode by mode with theta = omega dt, the exact answer is
-   z = dt (1 - cos theta)/(M theta^2) f; the operator
+   Over a step dt the body answers a change of its nodal forces f with a change of its mean velocity z. For a rigid body of mass M that is
+   z = dt/2 f/M, whatever the number of substeps (velocity Verlet). For an elastic one, mode by mode with theta = omega dt, the exact
+   answer is z = dt (1 - cos theta)/(M theta^2) f; the operator
 
-       z = S f,   (M + beta dt^2 K) z = c f
+       z = S f,   (M + beta dt^2 K) z = dt/2 f
 
    follows it at low theta exactly and is never below it for beta <= 1/12 (1/6: at most a quarter below, near theta = 2.5), which is the side
    on which the loop is stable. It replaces the nodal or impedance mass m_R of method 5.3 by the body's own tangent K, so that every interface
@@ -61,12 +61,9 @@ PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
 {
   CouplerResponse *r = &s->response;
   const PetscReal *mass;
-  PetscInt         n_substeps;
   Vec              U, V, F;
 
   PetscFunctionBegin;
-  PetscCall(TLEDGetSubsteps(s->tled, dt, &n_substeps));
-  r->factor  = 0.5 * dt * (1.0 + 1.0 / (PetscReal)n_substeps);
   r->dt_step = dt;
   if (r->dt > 0.0 && PetscAbsReal(dt / r->dt - 1.0) < 0.05 && r->age++ < c->params.response_every) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
@@ -97,7 +94,7 @@ PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], 
   PetscFunctionBegin;
   PetscCall(TLEDIsConstrained(s->tled, &constrained));
   PetscCall(VecGetArrayWrite(r->rhs, &b));
-  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) b[i] = constrained[i / 3] ? 0.0 : r->factor * force[i];
+  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) b[i] = constrained[i / 3] ? 0.0 : 0.5 * r->dt_step * force[i];
   PetscCall(VecRestoreArrayWrite(r->rhs, &b));
   PetscCall(KSPSolve(r->ksp, r->rhs, r->solution));
   PetscCall(VecGetArrayRead(r->solution, &z));
