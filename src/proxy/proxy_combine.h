@@ -133,12 +133,13 @@ BY_HD ProxyDual ProxyCovered(double h, const ProxyDual *coverage, const ProxyDua
   return ProxyDualOf2(value, slope/need, coverage, -slope*coverage->v/(need*need)*need_slope, z);
 }
 
-/* The inside of a node ends where its proxies end: a particle behind it (over 0.2 h) whose tangent plane they do not cover is not in
-   the body but past a bend, or beside a patch that is smaller than the kernel. */
-BY_HD void ProxyTrust(double h, ProxyNode *a)
+/* A node ends where its proxies end. As one of a union's two: where they no longer cover the particle's tangent plane, for there it would
+   be a half space that the surface does not have (a flap of a fold, a step lower than the kernel). As the whole body: a particle behind it
+   (over 0.2 h) that they do not cover is not inside but past a bend. */
+BY_HD void ProxyTrust(double h, int whole, ProxyNode *a)
 {
-  double       slope;
-  const double behind = ProxySmoothStep(-a->z.v/(0.2*h), &slope);
+  double       slope = 0.0;
+  const double behind = whole ? ProxySmoothStep(-a->z.v/(0.2*h), &slope) : 1.0;
 
   if (behind == 0.0) return;
   const ProxyDual covered = ProxyCovered(h, &a->coverage, &a->z);
@@ -150,8 +151,8 @@ BY_HD void ProxyTrust(double h, ProxyNode *a)
 BY_HD void ProxyCombine(int convex, double h, double s, ProxyNode *a, ProxyNode *b, ProxyNode *out)
 {
   if (!convex) {
-    ProxyTrust(h, a);
-    ProxyTrust(h, b);
+    ProxyTrust(h, 0, a);
+    ProxyTrust(h, 0, b);
   }
   const ProxyDual cosine = ProxyDualDot(a->n, b->n);
   double          slope, Cu, Cv, Ct, u = a->y.v/s, v = b->y.v/s, C;
@@ -333,7 +334,7 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
   }
 
   ProxyCotree(n, h, s, convex, concave, leaf, &total);
-  ProxyTrust(h, &total);
+  ProxyTrust(h, 1, &total);
   for (int p = 0; p < n; p++) {
     for (int k = 0; k < 3; k++) grad[p][k] = total.y.g[3*p + k];
   }
