@@ -21,6 +21,7 @@
 
 #define PROXY_PATCHES 8        /* patches of one body within reach of one particle; further ones are left out          */
 #define PROXY_RIM_COVERAGE 0.4 /* an open rim fades when the proxies cover less than this part of the tangent plane     */
+#define PROXY_MIN_COVERAGE 0.1 /* so does everything when they cover less than this: beyond a corner at 0.4 h it is 0.06 */
 
 /* Shepard means over the proxies of one patch at one particle, with gradients (grad_n: row k is the gradient of n_k) */
 typedef struct {
@@ -120,29 +121,33 @@ BY_HD double ProxyCopulaTheta(double cosine, double *slope)
   return k*k;
 }
 
-/* smooth step of coverage over what must be covered: PROXY_RIM_COVERAGE, less for a particle far off, which sees only the proxies right
+/* smooth step of coverage over what must be covered: `least`, less for a particle far off, which sees only the proxies right
    beneath it (over the outer half of h) */
-BY_HD ProxyDual ProxyCovered(double h, const ProxyDual *coverage, const ProxyDual *z)
+BY_HD ProxyDual ProxyCovered(double h, double least, const ProxyDual *coverage, const ProxyDual *z)
 {
   const double sign = z->v < 0.0 ? -1.0 : 1.0;
   double       slope;
-  const double part = ProxySmoothStep((h - sign*z->v)/(0.5*h), &slope), need = PROXY_RIM_COVERAGE*part;
+  const double part = ProxySmoothStep((h - sign*z->v)/(0.5*h), &slope), need = least*part;
 
   if (coverage->v >= need) return ProxyDualOf(1.0);
-  const double need_slope = -sign*PROXY_RIM_COVERAGE*slope/(0.5*h), value = ProxySmoothStep(coverage->v/need, &slope);
+  const double need_slope = -sign*least*slope/(0.5*h), value = ProxySmoothStep(coverage->v/need, &slope);
   return ProxyDualOf2(value, slope/need, coverage, -slope*coverage->v/(need*need)*need_slope, z);
 }
 
 /* A node ends where its proxies end. As one of a union's two: where they no longer cover the particle's tangent plane, for there it would
    be a half space that the surface does not have (a flap of a fold, a step lower than the kernel). As the whole body: a particle behind it
-   (over 0.2 h) that they do not cover is not inside but past a bend. */
+   (over 0.2 h) that they do not cover is not inside but past a bend; and one of which they see next to nothing is not there. */
 BY_HD void ProxyTrust(double h, int whole, ProxyNode *a)
 {
   double       slope = 0.0;
   const double behind = whole ? ProxySmoothStep(-a->z.v/(0.2*h), &slope) : 1.0;
 
+  if (whole) {
+    const ProxyDual seen = ProxyCovered(h, PROXY_MIN_COVERAGE, &a->coverage, &a->z);
+    if (seen.v < 1.0) a->y = ProxyDualTimes(&a->y, &seen);
+  }
   if (behind == 0.0) return;
-  const ProxyDual covered = ProxyCovered(h, &a->coverage, &a->z);
+  const ProxyDual covered = ProxyCovered(h, PROXY_RIM_COVERAGE, &a->coverage, &a->z);
   const ProxyDual trust = ProxyDualOf2(1.0 - (1.0 - covered.v)*behind, behind, &covered, (1.0 - covered.v)*slope/(0.2*h), &a->z);
   a->y = ProxyDualTimes(&a->y, &trust);
 }
@@ -329,7 +334,7 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
   // open rims end where the proxies of all patches together no longer cover the particle's tangent plane
   for (int p = 0; p < n; p++) {
     if (!patch[p].open) continue;
-    const ProxyDual cut = ProxyCovered(h, &coverage, &leaf[p].z);
+    const ProxyDual cut = ProxyCovered(h, PROXY_RIM_COVERAGE, &coverage, &leaf[p].z);
     if (cut.v < 1.0) leaf[p].y = ProxyDualTimes(&leaf[p].y, &cut);
   }
 

@@ -255,12 +255,12 @@ static inline int OutOfReach(const ProxyReach *reach, const double r[3])
   return Dot3(r, r) - up*up > reach->radius2 || fabs(up) > reach->half;
 }
 
-/* gather the pairs of a particle; returns their number, *n_slots patches among them, sums of weights by slot, whether the mean height is
-   positive; 0 when nothing touches */
+/* gather the pairs of a particle; returns their number, *n_slots patches among them, sums of weights by slot, whether the particle is
+   clearly in front; 0 when nothing touches */
 static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3], PetscInt begin, PetscInt end, Touch touch[], int *n_slots,
                            PetscInt slots[PROXY_PATCHES], double D[PROXY_PATCHES], int *in_front)
 {
-  double z_min = PETSC_MAX_REAL, z_sum = 0.0;
+  double z_min = PETSC_MAX_REAL, z_sum = 0.0, cover = 0.0;
   int    n = 0;
 
   *n_slots = 0;
@@ -284,12 +284,13 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
     D[slot] += touch[n].pair.w;
     z_min = PetscMin(z_min, touch[n].pair.z);
     z_sum += touch[n].pair.w*touch[n].pair.z;
+    cover += touch[n].pair.cover;
     touch[n].slot  = slot;
     touch[n].proxy = i;
     touch[n].image = (int)(p->cells.entry[e]%27);
     n++;
   }
-  *in_front = z_sum >= 0.0;
+  *in_front = z_sum >= 0.0 && cover >= PROXY_MIN_COVERAGE;
   return z_min < p->fluid.h ? n : 0;
 }
 
