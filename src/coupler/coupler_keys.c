@@ -49,7 +49,7 @@ const Key ObstacleKeys[] = {
 
 const Key CouplerKeys[] = {
   {"scheme",         KEY_CHOICE, ROW(CouplerParams, scheme),         "",  "auto", 0, 0, 0, scheme_names, "how fluid and bodies are coupled; auto = mass for bodies that the water's added mass can drive, else explicit"},
-  {"response_beta",  KEY_REAL,   ROW(CouplerParams, response_beta),  "1", "0.1667", 0, 1, 0, NULL, "beta of the interface response (M + beta dt^2 K)^-1 of scheme mass"},
+  {"response_beta",  KEY_REAL,   ROW(CouplerParams, response_beta),  "1", "0.25", 0, 1, 0, NULL, "beta of the interface response (M + beta dt^2 K)^-1 of scheme mass"},
   {"response_every", KEY_INT,    ROW(CouplerParams, response_every), "1", "10", 1, 1e6, 0, NULL, "steps between refreshes of the tangent in the interface response"},
   {"passes",         KEY_INT,    ROW(CouplerParams, passes),         "1", "1", 1, 100, 0, NULL, "pressure solves a step of scheme mass, each with the body's true answer to the last"},
   KEY_END};
