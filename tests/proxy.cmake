@@ -2,3 +2,4 @@
 foreach(topic kernel curvature sample contacts update transfer input)
   byssus_test(unit/proxy/test_${topic} base sph proxy)
 endforeach()
+byssus_test(unit/surface/test_surface base)

@@ -71,10 +71,10 @@ static inline double FixtureBallPart(int kernel, double D, double R)
   return sum;
 }
 
-/* part of the kernel (cubic spline, h = 1) in the box |x_k| < half_k: midpoint rule with the overlap of each cell, error 3e-5 */
+/* part of the kernel (cubic spline, h = 1) in the box |x_k| < half_k: midpoint rule with the overlap of each cell, error 6e-5 */
 static inline double FixtureBoxPart(const double x[3], const double half[3])
 {
-  enum { N = 50 };
+  enum { N = 36 };
   double overlap[3][N], sum = 0.0, all = 0.0;
 
   for (int k = 0; k < 3; k++) {
