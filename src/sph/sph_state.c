@@ -118,7 +118,7 @@ static void Displace(SPH sph)
 }
 
 /*@
-  SPHPack - push an initial cloud apart until nothing is compressed; velocities, pressures and time are untouched
+  SPHPack - push an initial cloud apart until nothing is compressed; velocities and time are untouched, pressures are zero afterwards
 
   Input Parameters:
 + sph        - the fluid, set up
@@ -153,5 +153,6 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
     sph->params.tolerance = tolerance;
     Displace(sph);
   }
+  PetscCall(PetscArrayzero(sph->p, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
