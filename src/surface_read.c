@@ -379,6 +379,7 @@ static PetscErrorCode Weld(Reading *r, PetscReal scale, const PetscReal translat
   PetscInt      *same, *number, n = 0;
 
   PetscFunctionBegin;
+  if (!r->n_triangles) PetscFunctionReturn(Bad(r, "it has no triangles"));
   for (size_t i = 0; i < 3*r->n_triangles; i++) {
     if ((size_t)r->triangles[i] >= r->n_nodes) PetscFunctionReturn(Bad(r, "a triangle names a point that is not there"));
   }

@@ -185,7 +185,7 @@ static PetscErrorCode GaussianMeasure(const ProxySurface *s, const PetscReal x[]
     kappa[v] = PetscAbsReal(kappa[v]);
     if (area[v] > 0.0) sorted[n++] = kappa[v];
   }
-  PetscCall(CurvatureRange(params, h, n, sorted, &lo, &hi));
+  if (n) PetscCall(CurvatureRange(params, h, n, sorted, &lo, &hi));
   for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = Normalized(params, lo, hi, kappa[v]);
   for (PetscInt e = 0; e < s->n_edges; e++) {
     const PetscReal a = kappa[s->edge_nodes[2*e]], b = kappa[s->edge_nodes[2*e + 1]];

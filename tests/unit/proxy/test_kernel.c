@@ -45,7 +45,9 @@ static void height_is_the_distance_from_planes_balls_and_cylinders(void **state)
   unsigned long seed = 3;
   (void)state;
   for (int i = 0; i < 200; i++) {
-    const double     k = 1.6*FixtureRandom(&seed) - 0.8, r[3] = {FixtureRandom(&seed) - 0.5, FixtureRandom(&seed) - 0.5, FixtureRandom(&seed)*0.8};
+    const double     k = 1.6*FixtureRandom(&seed) - 0.8;
+    double           r[3];
+    for (int d = 0; d < 3; d++) r[d] = d < 2 ? FixtureRandom(&seed) - 0.5 : 0.8*FixtureRandom(&seed);
     const ProxyPoint plane = Point(0, 0), ball = Point(k, k), cylinder = Point(k, 0);
     const double     c = r[2] + 1.0/k, sign = k > 0.0 ? 1.0 : -1.0;
     double           grad[3];
@@ -82,8 +84,9 @@ static void half_space_gradients_are_exact(void **state)
   for (int c = 0; c < 5; c++) {
     const ProxyPoint b = Point(curvature[c][0], curvature[c][1]);
     for (int i = 0; i < 200; i++) {
-      const double r[3] = {1.6*FixtureRandom(&seed) - 0.8, 1.6*FixtureRandom(&seed) - 0.8, 1.6*FixtureRandom(&seed) - 0.4};
-      ProxyPair    p, lo, hi;
+      double    r[3];
+      ProxyPair p, lo, hi;
+      for (int k = 0; k < 3; k++) r[k] = 1.6*FixtureRandom(&seed) - (k < 2 ? 0.8 : 0.4);
       if (!ProxyPairHalfSpace(SPH_CUBIC, 1.0, &b, r, &p)) continue;
       for (int k = 0; k < 3; k++) {
         double a[3] = {r[0], r[1], r[2]}, e[3] = {r[0], r[1], r[2]};
@@ -107,8 +110,8 @@ static void ellipsoid_gradient_is_exact(void **state)
   (void)state;
   b.radius[0] = 2.2, b.radius[1] = 1.4, b.inset = 0.25;
   for (int i = 0; i < 300; i++) {
-    const double r[3] = {3.0*FixtureRandom(&seed) - 1.5, 2.0*FixtureRandom(&seed) - 1.0, 1.6*FixtureRandom(&seed) - 0.4};
-    double       grad[3], unused[3];
+    double r[3], grad[3], unused[3];
+    for (int k = 0; k < 3; k++) r[k] = (k == 0 ? 3.0 : k == 1 ? 2.0 : 1.6)*FixtureRandom(&seed) - (k == 0 ? 1.5 : k == 1 ? 1.0 : 0.4);
     ProxyPairEllipsoid(SPH_CUBIC, 1.0, &b, r, grad);
     if (ProxyPairEllipsoid(SPH_CUBIC, 1.0, &b, r, grad) == 0.0) continue;
     for (int k = 0; k < 3; k++) {
