@@ -284,9 +284,8 @@ BY_HD ProxyDual ProxyNeutral(double h, const ProxyDual *z_p, const ProxyDual *z_
   return ProxyDualTimes(&opposed, &nearer);
 }
 
-/* phi of a body at a particle from its n patches, the part of its gradient that belongs to each (n x 3), and the particle's height above the
-   body [m], negative inside; s = calibration */
-BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch[], double grad[][3], double *height)
+/* phi of a body at a particle from its n patches, and the part of its gradient that belongs to each (n x 3); s = calibration */
+BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch[], double grad[][3])
 {
   ProxyNode leaf[PROXY_PATCHES], total;
   ProxyDual coverage = ProxyDualOf(0.0);
@@ -344,7 +343,6 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
   for (int p = 0; p < n; p++) {
     for (int k = 0; k < 3; k++) grad[p][k] = total.y.g[3*p + k];
   }
-  *height = total.z.v;
   return total.y.v;
 }
 

@@ -9,7 +9,7 @@
 typedef struct {
   PetscInt   n_touched, n_pairs, touched_capacity, pair_capacity;
   PetscInt  *particle, *n_of, *proxy; /* by touched particle, number of its pairs; by pair */
-  PetscReal *value, *share;           /* position, phi, grad, height (8) by touched; 3 by pair */
+  PetscReal *value, *share;           /* position, phi, grad (7) by touched; 3 by pair     */
 } Chunk;
 
 /* one pair at the particle at hand */
@@ -25,7 +25,7 @@ static int ChunkReserve(Chunk *c, PetscInt n_pairs)
     c->touched_capacity = c->touched_capacity ? 2*c->touched_capacity : 128;
     c->particle = (PetscInt *)realloc(c->particle, sizeof(PetscInt)*(size_t)c->touched_capacity);
     c->n_of     = (PetscInt *)realloc(c->n_of, sizeof(PetscInt)*(size_t)c->touched_capacity);
-    c->value    = (PetscReal *)realloc(c->value, 8*sizeof(PetscReal)*(size_t)c->touched_capacity);
+    c->value    = (PetscReal *)realloc(c->value, 7*sizeof(PetscReal)*(size_t)c->touched_capacity);
   }
   if (c->n_pairs + n_pairs > c->pair_capacity) {
     c->pair_capacity = 2*(c->pair_capacity + n_pairs);
@@ -51,7 +51,7 @@ PetscErrorCode ProxyContactsDestroy(Proxy proxy)
   proxy->chunks = NULL;
   PetscCall(PetscFree(proxy->cells.start));
   PetscCall(PetscFree(proxy->cells.entry));
-  PetscCall(PetscFree6(proxy->contacts.particle, proxy->contacts.position, proxy->contacts.phi, proxy->contacts.height, proxy->contacts.grad, proxy->contacts.start));
+  PetscCall(PetscFree5(proxy->contacts.particle, proxy->contacts.position, proxy->contacts.phi, proxy->contacts.grad, proxy->contacts.start));
   PetscCall(PetscFree2(proxy->contacts.proxy, proxy->contacts.share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -296,17 +296,16 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
 
 /* phi and the gradient's part of each patch at a particle */
 static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3], const Touch touch[], int n, int n_slots,
-                           const PetscInt slots[], const double D[], int in_front, double grad[][3], double *height)
+                           const PetscInt slots[], const double D[], int in_front, double grad[][3])
 {
   ProxyPatchValue value[PROXY_PATCHES];
 
   // the usual case: in front of one patch without open rims
   if (n_slots == 1 && !p->surface.patch_open[slots[0]] && in_front) {
-    double lambda = 0.0, gD[3] = {0}, g[3] = {0}, z = 0.0;
+    double lambda = 0.0, gD[3] = {0}, g[3] = {0};
     for (int i = 0; i < n; i++) {
       const ProxyPair *q = &touch[i].pair;
       lambda += q->w*q->lambda;
-      z += q->w*q->z;
       for (int k = 0; k < 3; k++) {
         gD[k] += q->grad_w[k];
         g[k] += q->grad_w[k]*q->lambda + q->w*q->grad_lambda[k];
@@ -314,19 +313,18 @@ static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3
     }
     lambda /= D[0];
     for (int k = 0; k < 3; k++) grad[0][k] = p->factor*(g[k] - lambda*gD[k])/D[0];
-    *height = z/D[0];
     return p->factor*lambda;
   }
   for (int s = 0; s < n_slots; s++) {
     PatchMeans(p, x, base, touch, n, s, &value[s]);
     value[s].open = p->surface.patch_open[slots[s]];
   }
-  return ProxyBodyPhi(n_slots, p->fluid.h, p->factor, value, grad, height);
+  return ProxyBodyPhi(n_slots, p->fluid.h, p->factor, value, grad);
 }
 
 /* write one touched particle and its pairs; proxies with less than 1e-14 of the weight are left out */
-static int Emit(Chunk *c, const Proxy p, PetscInt particle, const double x[3], const double base[3], double phi, double height, const Touch touch[],
-                int n, const double D[], double grad[][3])
+static int Emit(Chunk *c, const Proxy p, PetscInt particle, const double x[3], const double base[3], double phi, const Touch touch[], int n,
+                const double D[], double grad[][3])
 {
   double   total[3] = {0}, shift[3], best = -1.0;
   int      image = 13;
@@ -346,11 +344,10 @@ static int Emit(Chunk *c, const Proxy p, PetscInt particle, const double x[3], c
   c->particle[c->n_touched] = particle;
   c->n_of[c->n_touched]     = c->n_pairs - first;
   for (int k = 0; k < 3; k++) {
-    c->value[8*c->n_touched + k]     = x[k] - shift[k];
-    c->value[8*c->n_touched + 4 + k] = total[k];
+    c->value[7*c->n_touched + k]     = x[k] - shift[k];
+    c->value[7*c->n_touched + 4 + k] = total[k];
   }
-  c->value[8*c->n_touched + 3] = phi;
-  c->value[8*c->n_touched + 7] = height;
+  c->value[7*c->n_touched + 3] = phi;
   c->n_touched++;
   return 1;
 }
@@ -377,8 +374,7 @@ static int ParticleEllipsoid(Chunk *c, const Proxy p, PetscInt particle, const d
     touch[n].image  = (int)(p->cells.entry[e]%27);
     n++;
   }
-  // no normal to measure along: the distance of a plane that would take the same part
-  return n ? Emit(c, p, particle, x, base, phi, p->fluid.h*SPHHalfSpaceDistance(p->fluid.kernel, phi), touch, n, NULL, grad) : 1;
+  return n ? Emit(c, p, particle, x, base, phi, touch, n, NULL, grad) : 1;
 }
 
 static int ParticleHalfSpace(Chunk *c, const Proxy p, PetscInt particle, const double x[3], const double base[3], PetscInt begin, PetscInt end,
@@ -390,9 +386,8 @@ static int ParticleHalfSpace(Chunk *c, const Proxy p, PetscInt particle, const d
   const int n = GatherHalfSpace(p, x, base, begin, end, touch, &n_slots, slots, D, &in_front);
 
   if (!n) return 1;
-  double       height;
-  const double phi = PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, in_front, grad, &height);
-  return phi > 0.0 ? Emit(c, p, particle, x, base, phi, height, touch, n, D, grad) : 1;
+  const double phi = PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, in_front, grad);
+  return phi > 0.0 ? Emit(c, p, particle, x, base, phi, touch, n, D, grad) : 1;
 }
 
 /* all particles of one chunk; 0 when memory ran out */
@@ -427,7 +422,7 @@ static PetscErrorCode Collect(Proxy p, PetscInt n_chunks, SPHContacts *out)
   Chunk      *chunks = (Chunk *)p->chunks;
   SPHContacts *c = &p->contacts;
   PetscInt    n_touched = 0, n_pairs = 0, *particle, *start, *proxy, *at;
-  PetscReal  *position, *phi, *height, *grad, *share;
+  PetscReal  *position, *phi, *grad, *share;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n_chunks; i++) {
@@ -435,9 +430,9 @@ static PetscErrorCode Collect(Proxy p, PetscInt n_chunks, SPHContacts *out)
     n_pairs += chunks[i].n_pairs;
   }
   if (n_touched + 1 > p->touched_capacity) {
-    PetscCall(PetscFree6(c->particle, c->position, c->phi, c->height, c->grad, c->start));
+    PetscCall(PetscFree5(c->particle, c->position, c->phi, c->grad, c->start));
     p->touched_capacity = n_touched + n_touched/2 + 16;
-    PetscCall(PetscMalloc6(p->touched_capacity, &c->particle, 3*p->touched_capacity, &c->position, p->touched_capacity, &c->phi, p->touched_capacity, &c->height, 3*p->touched_capacity, &c->grad, p->touched_capacity + 1, &c->start));
+    PetscCall(PetscMalloc5(p->touched_capacity, &c->particle, 3*p->touched_capacity, &c->position, p->touched_capacity, &c->phi, 3*p->touched_capacity, &c->grad, p->touched_capacity + 1, &c->start));
   }
   if (n_pairs > p->pair_capacity) {
     PetscCall(PetscFree2(c->proxy, c->share));
@@ -446,7 +441,7 @@ static PetscErrorCode Collect(Proxy p, PetscInt n_chunks, SPHContacts *out)
   }
   // the fluid may only read these arrays: they are ours
   particle = (PetscInt *)c->particle, start = (PetscInt *)c->start, proxy = (PetscInt *)c->proxy;
-  position = (PetscReal *)c->position, phi = (PetscReal *)c->phi, height = (PetscReal *)c->height, grad = (PetscReal *)c->grad, share = (PetscReal *)c->share;
+  position = (PetscReal *)c->position, phi = (PetscReal *)c->phi, grad = (PetscReal *)c->grad, share = (PetscReal *)c->share;
   PetscCall(PetscMalloc1(2*(n_chunks + 1), &at));
   at[0] = at[1] = 0;
   for (PetscInt i = 0; i < n_chunks; i++) {
@@ -460,13 +455,12 @@ static PetscErrorCode Collect(Proxy p, PetscInt n_chunks, SPHContacts *out)
     for (PetscInt t = 0; t < k->n_touched; t++) {
       const PetscInt j = at[2*i] + t;
       particle[j] = k->particle[t];
-      phi[j]      = k->value[8*t + 3];
-      height[j]   = k->value[8*t + 7];
+      phi[j]      = k->value[7*t + 3];
       start[j]    = pair;
       pair += k->n_of[t];
       for (int d = 0; d < 3; d++) {
-        position[3*j + d] = k->value[8*t + d];
-        grad[3*j + d]     = k->value[8*t + 4 + d];
+        position[3*j + d] = k->value[7*t + d];
+        grad[3*j + d]     = k->value[7*t + 4 + d];
       }
     }
     for (PetscInt q = 0; q < k->n_pairs; q++) {
