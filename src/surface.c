@@ -88,37 +88,54 @@ static PetscErrorCode BucketsDestroy(Buckets *b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* squared distance of a point to a triangle: the plane where the foot is inside, else the nearest edge.
+/* squared distance of a point to a triangle: the plane where the foot is inside, else the nearest edge; the foot is a + v ab + w ac.
    C. Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5 (Voronoi regions of the triangle). */
-static double TriangleDistance2(const double p[3], const double a[3], const double b[3], const double c[3])
+static double TriangleDistance2(const double p[3], const double a[3], const double b[3], const double c[3], double foot[2])
 {
   double ab[3], ac[3], ap[3], bp[3], cp[3], r[3], v, w;
 
   Sub3(b, a, ab), Sub3(c, a, ac), Sub3(p, a, ap);
   const double d1 = Dot3(ab, ap), d2 = Dot3(ac, ap);
+  foot[0] = foot[1] = 0.0;
   if (d1 <= 0.0 && d2 <= 0.0) return Dot3(ap, ap);
   Sub3(p, b, bp);
   const double d3 = Dot3(ab, bp), d4 = Dot3(ac, bp);
-  if (d3 >= 0.0 && d4 <= d3) return Dot3(bp, bp);
+  if (d3 >= 0.0 && d4 <= d3) {
+    foot[0] = 1.0;
+    return Dot3(bp, bp);
+  }
   Sub3(p, c, cp);
   const double d5 = Dot3(ab, cp), d6 = Dot3(ac, cp);
-  if (d6 >= 0.0 && d5 <= d6) return Dot3(cp, cp);
+  if (d6 >= 0.0 && d5 <= d6) {
+    foot[1] = 1.0;
+    return Dot3(cp, cp);
+  }
   const double va = d3*d6 - d5*d4, vb = d5*d2 - d1*d6, vc = d1*d4 - d3*d2;
   if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) v = d1/(d1 - d3), w = 0.0;
   else if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) v = 0.0, w = d2/(d2 - d6);
   else if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) w = (d4 - d3)/((d4 - d3) + (d5 - d6)), v = 1.0 - w;
   else v = vb/(va + vb + vc), w = vc/(va + vb + vc);
   for (int k = 0; k < 3; k++) r[k] = ap[k] - v*ab[k] - w*ac[k];
+  foot[0] = v, foot[1] = w;
   return Dot3(r, r);
 }
 
 PetscErrorCode SurfaceDistance(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles,
                                const PetscInt triangles[], PetscReal reach, PetscReal distance[])
 {
+  PetscFunctionBegin;
+  PetscCall(SurfaceClosest(n_points, points, x, n_triangles, triangles, reach, distance, NULL, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceClosest(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles, const PetscInt triangles[],
+                              PetscReal reach, PetscReal distance[], PetscInt triangle[], PetscReal weights[])
+{
   Buckets b;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n_points; i++) distance[i] = PETSC_MAX_REAL;
+  for (PetscInt i = 0; triangle && i < n_points; i++) triangle[i] = -1;
   if (!n_triangles || !(reach > 0.0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BucketsCreate(x, n_triangles, triangles, reach, &b));
 #pragma omp parallel for schedule(dynamic, 256)
@@ -139,8 +156,15 @@ PetscErrorCode SurfaceDistance(PetscInt n_points, const PetscReal points[], cons
           const PetscInt c = (z*b.dims[1] + y)*b.dims[0] + w;
           for (PetscInt k = b.start[c]; k < b.start[c + 1]; k++) {
             const PetscInt *v  = &triangles[3*b.item[k]];
-            const double    d2 = TriangleDistance2(p, &x[3*v[0]], &x[3*v[1]], &x[3*v[2]]);
-            if (d2 <= best) best = d2, distance[i] = sqrt(d2);
+            double          foot[2];
+            const double    d2 = TriangleDistance2(p, &x[3*v[0]], &x[3*v[1]], &x[3*v[2]], foot);
+            if (d2 > best) continue;
+            best = d2, distance[i] = sqrt(d2);
+            if (!triangle) continue;
+            triangle[i]      = b.item[k];
+            weights[3*i]     = 1.0 - foot[0] - foot[1];
+            weights[3*i + 1] = foot[0];
+            weights[3*i + 2] = foot[1];
           }
         }
       }

@@ -24,4 +24,9 @@ BY_EXTERN PetscErrorCode SurfaceWinding(PetscInt n_points, const PetscReal point
 BY_EXTERN PetscErrorCode SurfaceDistance(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles,
                                          const PetscInt triangles[], PetscReal reach, PetscReal distance[]);
 
+/* The same, and where: the closest triangle (-1 beyond reach) and its foot's barycentric weights, n_points x 3; both may be NULL. Of
+   equally near triangles the last is taken. */
+BY_EXTERN PetscErrorCode SurfaceClosest(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles, const PetscInt triangles[],
+                                        PetscReal reach, PetscReal distance[], PetscInt triangle[], PetscReal weights[]);
+
 #endif

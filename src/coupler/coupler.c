@@ -249,39 +249,21 @@ static PetscErrorCode TransferForces(CouplerSurface *s, SPHContacts *contacts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces are held while the nodes move, so the moment that they give over the substeps misses the one that the fluid has lost,
-   sum_a x_a(t) x f_a dt, at second order. A body that nothing holds gets the rest back as a rigid rotation of its velocity: angular
-   momentum of fluid and bodies is then exact. */
-static PetscErrorCode RestoreAngularMomentum(CouplerSurface *s, PetscReal dt)
+/* give a body that nothing holds the angular momentum `lost` [N m s] as a rigid rotation of its velocity */
+PetscErrorCode CouplerAddRotation(CouplerSurface *s, const PetscReal lost[3])
 {
-  const PetscReal *mass, *x, *v_read, *X, *impulse;
-  const PetscInt  *tets;
-  PetscReal       *v, total = 0.0, center[3] = {0, 0, 0}, inertia[9] = {0}, inverse[9], lost[3] = {0, 0, 0}, omega[3];
-  PetscBool        is_free;
+  const PetscReal *mass, *x, *v_read;
+  PetscReal       *v, total = 0.0, center[3] = {0, 0, 0}, inertia[9] = {0}, inverse[9], omega[3];
   Vec              U, V, F;
 
   PetscFunctionBegin;
-  PetscCall(TLEDIsFree(s->tled, &is_free));
-  if (!is_free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDGetMass(s->tled, &mass));
-  PetscCall(TLEDGetMesh(s->tled, &tets, &X));
   PetscCall(TLEDGetPositions(s->tled, &x, &v_read));
-  PetscCall(TLEDGetAngularImpulse(s->tled, &impulse));
   for (PetscInt a = 0; a < s->n_nodes; a++) {
-    double at[3], moment[3];
-
-    for (int k = 0; k < 3; k++) at[k] = X[3 * a + k] + s->start[3 * a + k];
-    Cross3(at, &s->force[3 * a], moment);
-    for (int k = 0; k < 3; k++) {
-      lost[k] += dt * moment[k];
-      center[k] += mass[a] * x[3 * a + k];
-    }
+    for (int k = 0; k < 3; k++) center[k] += mass[a] * x[3 * a + k];
     total += mass[a];
   }
-  for (int k = 0; k < 3; k++) {
-    lost[k] -= impulse[k];
-    center[k] /= total;
-  }
+  for (int k = 0; k < 3; k++) center[k] /= total;
   for (PetscInt a = 0; a < s->n_nodes; a++) {
     double r[3];
 
@@ -302,6 +284,39 @@ static PetscErrorCode RestoreAngularMomentum(CouplerSurface *s, PetscReal dt)
     for (int k = 0; k < 3; k++) v[3 * a + k] += turn[k];
   }
   PetscCall(VecRestoreArray(V, &v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sum_a x_a x f_a [N m] */
+void CouplerMoment(PetscInt n, const PetscReal x[], const PetscReal f[], PetscReal moment[3])
+{
+  for (int k = 0; k < 3; k++) moment[k] = 0.0;
+  for (PetscInt a = 0; a < n; a++) {
+    double m[3];
+
+    Cross3(&x[3 * a], &f[3 * a], m);
+    for (int k = 0; k < 3; k++) moment[k] += m[k];
+  }
+}
+
+/* The forces are held while the nodes move, so the moment that they give over the substeps misses the one that the fluid has lost,
+   sum_a x_a(t) x f_a dt, at second order. A free body gets the rest: angular momentum of fluid and bodies is then exact. */
+static PetscErrorCode RestoreAngularMomentum(CouplerSurface *s, PetscReal dt)
+{
+  const PetscReal *X, *impulse;
+  const PetscInt  *tets;
+  PetscReal        lost[3];
+  PetscBool        is_free;
+
+  PetscFunctionBegin;
+  PetscCall(TLEDIsFree(s->tled, &is_free));
+  if (!is_free) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TLEDGetMesh(s->tled, &tets, &X));
+  PetscCall(TLEDGetAngularImpulse(s->tled, &impulse));
+  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) s->answer[i] = X[i] + s->start[i];
+  CouplerMoment(s->n_nodes, s->answer, s->force, lost);
+  for (int k = 0; k < 3; k++) lost[k] = dt * lost[k] - impulse[k];
+  PetscCall(CouplerAddRotation(s, lost));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -398,7 +413,11 @@ static PetscErrorCode CoupledStep(Coupler c, PetscReal dt)
     }
     PetscCall(CouplerTimer(c, PHASE_SOLID));
   }
-  ByCall(SPHAdvance(c->sph, dt));
+  PetscCall(SPHKick(c->sph, dt));
+  PetscCall(CouplerTimer(c, PHASE_PRESSURE));
+  PetscCall(CouplerStop(c, dt));
+  PetscCall(CouplerTimer(c, PHASE_TRANSFER));
+  ByCall(SPHDrift(c->sph, dt));
   PetscCall(CouplerTimer(c, PHASE_PRESSURE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

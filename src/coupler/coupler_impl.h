@@ -83,6 +83,10 @@ PETSC_INTERN PetscErrorCode CouplerResponseDestroy(CouplerResponse *response);
 /* coupler.c */
 PETSC_INTERN PetscErrorCode CouplerUpdateContacts(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerTimer(Coupler coupler, CouplerPhase phase);
+PETSC_INTERN PetscErrorCode CouplerAddRotation(CouplerSurface *s, const PetscReal lost[3]);
+PETSC_INTERN void           CouplerMoment(PetscInt n, const PetscReal x[], const PetscReal f[], PetscReal moment[3]);
+/* coupler_stop.c */
+PETSC_INTERN PetscErrorCode CouplerStop(Coupler coupler, PetscReal dt);
 /* coupler_probes.c */
 PETSC_INTERN PetscErrorCode CouplerAddProbes(Coupler coupler, const Names *names);
 PETSC_INTERN PetscErrorCode CouplerProbeHeaders(Coupler coupler, PetscInt *n, char headers[][2 * BY_NAME_MAX]);

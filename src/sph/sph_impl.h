@@ -105,6 +105,9 @@ static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], P
   return k % 2 ? sph->max[k / 2] - x[k / 2] : x[k / 2] - sph->min[k / 2];
 }
 
+/* sph_stop.c */
+PETSC_INTERN void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt);
+
 /* sph_viscosity.c */
 PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);
 PETSC_INTERN PetscErrorCode SPHFilterPredict_Internal(SPH sph, PetscReal dt);

@@ -131,16 +131,15 @@ static PetscReal Wrap(PetscReal x, PetscReal lo, PetscReal hi)
 }
 
 /*@
-  SPHAdvance - end of the step: v = v* + dt a_p, x += dt v (symplectic Euler), periodic axes wrapped
+  SPHKick - first half of the end of a step: v = v* + dt a_p, stops at planar walls (sph_stop.c); positions stay
 
-  Errors:
-  BY_ERR_BREAKDOWN when a particle is not a number or left the domain through a wall
+.seealso: SPHDrift(), SPHAdvance()
 @*/
-PetscErrorCode SPHAdvance(SPH sph, PetscReal dt)
+PetscErrorCode SPHKick(SPH sph, PetscReal dt)
 {
   const int       n        = (int)sph->n;
   const PetscReal to_tilde = 1.0 / (sph->params.density * sph->params.density);
-  PetscReal       accel2 = 0.0, speed2 = 0.0;
+  PetscReal       accel2   = 0.0;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
@@ -149,28 +148,74 @@ PetscErrorCode SPHAdvance(SPH sph, PetscReal dt)
   sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
   sph->table->Acceleration(&sph->loops);
   sph->table->GetVector(&sph->loops, sph->accel);
-#pragma omp parallel for schedule(static) reduction(max : accel2, speed2)
+#pragma omp parallel for schedule(static) reduction(max : accel2)
   for (int i = 0; i < n; i++) {
-    PetscReal a2 = 0.0, v2 = 0.0;
+    PetscReal a2 = 0.0;
 
     for (int k = 0; k < 3; k++) {
       const PetscReal v = sph->v_star[3 * i + k] + dt * sph->accel[3 * i + k], a = (v - sph->v[3 * i + k]) / dt;
+
+      sph->v[3 * i + k] = v;
+      a2 += a * a;
+    }
+    accel2 = PetscMax(accel2, a2);
+  }
+  sph->accel_max = sqrt(accel2);
+  SPHStopAtPlanes_Internal(sph, dt);
+  PetscCall(PetscLogEventEnd(SPH_Advance, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHDrift - second half of the end of a step: x += dt v, periodic axes wrapped
+
+  Errors:
+  BY_ERR_BREAKDOWN when a particle is not a number or left the domain through a wall
+@*/
+PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
+{
+  const int n      = (int)sph->n;
+  PetscReal speed2 = 0.0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
+#pragma omp parallel for schedule(static) reduction(max : speed2)
+  for (int i = 0; i < n; i++) {
+    PetscReal v2 = 0.0;
+
+    for (int k = 0; k < 3; k++) {
+      const PetscReal v = sph->v[3 * i + k];
       PetscReal       x = sph->x[3 * i + k] + dt * v;
 
       if (sph->periodic >> k & 1) x = Wrap(x, sph->min[k], sph->max[k]);
-      sph->v[3 * i + k] = v;
       sph->x[3 * i + k] = x;
-      a2 += a * a;
       v2 += v * v;
     }
-    accel2 = PetscMax(accel2, a2);
     speed2 = PetscMax(speed2, v2);
   }
-  sph->accel_max = sqrt(accel2);
   sph->grid_drift += dt * sqrt(speed2);
   sph->dt_last = dt;
   sph->step++;
   ByCall(SPHCheckState_Internal(sph, "at its end"));
   PetscCall(PetscLogEventEnd(SPH_Advance, sph, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SPHAdvance - end of the step of a fluid alone: SPHKick() and SPHDrift(), symplectic Euler
+@*/
+PetscErrorCode SPHAdvance(SPH sph, PetscReal dt)
+{
+  PetscFunctionBegin;
+  PetscCall(SPHKick(sph, dt));
+  ByCall(SPHDrift(sph, dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* change the velocity of particle i between SPHKick() and SPHDrift(), where it meets a body [m/s] */
+PetscErrorCode SPHAddVelocity(SPH sph, PetscInt i, const PetscReal change[3])
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) sph->v[3 * i + k] += change[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
