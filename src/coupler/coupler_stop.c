@@ -2,9 +2,9 @@
 
    Pressure keeps the water out of a surface as the proxies see it, averaged over their supports and as the solid's answer was predicted. A lone
    particle at impact speed, a sharp edge, a dent smaller than a support can still let one end a step inside by a tenth of dx. So before the
-   particles move, those near a surface are held against its triangles at the end of the step: where a particle would end inside, the
-   normal part of its velocity relative to the triangle is cut (a plastic impact, SPHStopLacking), and the triangle's nodes get the
-   opposite impulse by the foot's barycentric weights. Momentum is kept; still water never comes so near. */
+   particles move, those near a surface are held against its triangles at the end of the step. Where a particle would end inside it meets
+   the triangle in a plastic impact, with the nodes' masses: the normal relative speed goes, momentum stays, energy never grows.
+   What is then still missing to SPH_STOP_GAP the particle is moved along the normal, without momentum. Still water never comes so near. */
 #include "coupler_impl.h"
 #include "mat3.h"
 
@@ -83,79 +83,113 @@ static void Outward(const Near *near, PetscInt t, PetscReal sign, PetscReal norm
   for (int i = 0; i < 3; i++) normal[i] /= length;
 }
 
-/* give the nodes of a body the impulses J (n x 3 [N s]); the moment about the origin that the fluid lost is `moment` [N m s] */
-static PetscErrorCode TakeImpulses(CouplerSurface *s, const PetscReal J[], const PetscReal moment[3])
+/* Impulse of a plastic impact of particle t with its triangle along the normal [N s]: takes the approaching relative speed away and gives
+   the nodes their part; v are the nodes' velocities. */
+static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscReal particle_mass, const PetscReal vi[3], const PetscReal normal[3],
+                        const PetscReal mass[], const PetscBool constrained[], PetscReal v[])
 {
-  const PetscReal *mass, *x, *velocity;
-  const PetscBool *constrained;
-  PetscReal       *v, given[3];
-  PetscBool        is_free;
-  Vec              U, V, F;
+  const PetscInt *node    = &near->triangles[3 * near->triangle[t]];
+  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), J;
+
+  for (int a = 0; s->tled && a < 3; a++) {
+    const PetscReal w = near->weights[3 * t + a];
+
+    speed -= w * Dot3(&v[3 * node[a]], normal);
+    if (!constrained[node[a]]) inverse += w * w / mass[node[a]];
+  }
+  J = PetscMax(0.0, -speed / inverse);
+  for (int a = 0; s->tled && a < 3; a++) {
+    if (constrained[node[a]]) continue;
+    for (int i = 0; i < 3; i++) {
+      const PetscReal gain = -J * near->weights[3 * t + a] / mass[node[a]] * normal[i];
+
+      s->work_solid += mass[node[a]] * gain * (v[3 * node[a] + i] + 0.5 * gain);
+      v[3 * node[a] + i] += gain;
+    }
+  }
+  return J;
+}
+
+/* all particles of a surface, one after another; lost: angular momentum that the water has lost [N m s] */
+static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const Near *near, PetscReal v_nodes[], PetscReal lost[3])
+{
+  CouplerSurface    *s = &c->surface[k];
+  const SPHContacts *q = &c->contacts[k];
+  const PetscReal   *x, *v, *p, *rho, *mass = NULL;
+  const PetscInt    *id;
+  const PetscBool   *constrained = NULL;
+  SPHParams         *params;
+
+  PetscFunctionBegin;
+  PetscCall(SPHGetParams(c->sph, &params));
+  PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
+  if (s->tled) {
+    PetscCall(TLEDGetMass(s->tled, &mass));
+    PetscCall(TLEDIsConstrained(s->tled, &constrained));
+  }
+  for (PetscInt t = 0; t < near->n; t++) {
+    const PetscReal gap = (near->winding[t] > 0.5 ? -1.0 : 1.0) * near->distance[t], stop = SPH_STOP_GAP * params->spacing;
+    PetscReal       normal[3], change[3], shift[3], vi[3], m[3], J;
+
+    if (near->triangle[t] < 0 || gap >= stop) continue;
+    Outward(near, t, gap < 0.0 ? -1.0 : 1.0, normal);
+    for (int i = 0; i < 3; i++) vi[i] = v[3 * q->particle[t] + i];
+    J = Impact(s, near, t, c->mass, vi, normal, mass, constrained, v_nodes);
+    for (int i = 0; i < 3; i++) {
+      change[i] = J / c->mass * normal[i];
+      shift[i]  = PetscMax(0.0, stop - gap - dt * J / c->mass) * normal[i];
+      vi[i] += change[i];
+      s->total[i] -= c->mass * change[i] / dt;
+      s->work_fluid -= c->mass * change[i] * (vi[i] - 0.5 * change[i]);
+    }
+    PetscCall(SPHStop(c->sph, q->particle[t], change, shift));
+    Cross3(&q->position[3 * t], change, m);
+    for (int i = 0; i < 3; i++) lost[i] -= c->mass * m[i];
+    Cross3(shift, vi, m);
+    for (int i = 0; i < 3; i++) lost[i] -= c->mass * m[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sum_a m_a x_a x v_a of a body [kg m^2/s] */
+static PetscErrorCode AngularMomentum(CouplerSurface *s, PetscReal L[3])
+{
+  const PetscReal *mass, *x, *v;
 
   PetscFunctionBegin;
   PetscCall(TLEDGetMass(s->tled, &mass));
-  PetscCall(TLEDIsConstrained(s->tled, &constrained));
-  PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
-  PetscCall(VecGetArray(V, &v));
-  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) {
-    const PetscReal gain = constrained[i / 3] ? 0.0 : J[i] / mass[i / 3];
-
-    s->work_solid += J[i] * (v[i] + 0.5 * gain);
-    v[i] += gain;
-  }
-  PetscCall(VecRestoreArray(V, &v));
-  PetscCall(TLEDIsFree(s->tled, &is_free));
-  if (!is_free) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TLEDGetPositions(s->tled, &x, &velocity));
-  CouplerMoment(s->n_nodes, x, J, given);
-  for (int k = 0; k < 3; k++) given[k] = moment[k] - given[k];
-  PetscCall(CouplerAddRotation(s, given));
+  PetscCall(TLEDGetPositions(s->tled, &x, &v));
+  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) s->answer[i] = mass[i / 3] * v[i];
+  CouplerMoment(s->n_nodes, x, s->answer, L);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* particles of surface k, after the kick of the fluid and the step of the body */
 static PetscErrorCode StopAtSurface(Coupler c, PetscInt k, PetscReal dt)
 {
-  CouplerSurface    *s = &c->surface[k];
-  const SPHContacts *q = &c->contacts[k];
-  const PetscReal   *x, *v, *p, *rho;
-  const PetscInt    *id;
-  PetscReal          moment[3] = {0, 0, 0};
-  PetscInt           n_stopped = 0;
-  Near               near;
+  CouplerSurface *s = &c->surface[k];
+  PetscReal       lost[3] = {0, 0, 0}, before[3], after[3], *v = NULL;
+  PetscBool       is_free = PETSC_FALSE;
+  Vec             U, V = NULL, F;
+  Near            near;
 
   PetscFunctionBegin;
   PetscCall(FindNear(c, k, dt, &near));
   PetscCall(FindInside(&near));
-  PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
-  if (s->tled) PetscCall(PetscArrayzero(s->answer, 3 * s->n_nodes));
-  for (PetscInt t = 0; t < near.n; t++) {
-    const PetscReal  sign = near.winding[t] > 0.5 ? -1.0 : 1.0, *vi = &v[3 * q->particle[t]];
-    const PetscInt  *node;
-    PetscReal        normal[3], wall[3] = {0, 0, 0}, change[3], m[3];
-
-    if (near.triangle[t] < 0) continue;
-    node = &near.triangles[3 * near.triangle[t]];
-    Outward(&near, t, sign, normal);
-    for (int a = 0; s->tled && a < 3; a++) {
-      for (int i = 0; i < 3; i++) wall[i] += near.weights[3 * t + a] * s->mean_velocity[3 * node[a] + i];
-    }
-    const PetscReal speed   = Dot3(vi, normal) - Dot3(wall, normal);
-    const PetscReal lacking = SPHStopLacking(c->sph, sign * near.distance[t] - dt * speed, speed, dt);
-
-    if (lacking == 0.0) continue;
-    n_stopped++;
-    for (int i = 0; i < 3; i++) change[i] = lacking * normal[i];
-    PetscCall(SPHAddVelocity(c->sph, q->particle[t], change));
-    Cross3(&q->position[3 * t], change, m);
-    for (int i = 0; i < 3; i++) {
-      moment[i] -= c->mass * m[i];
-      s->total[i] -= c->mass * change[i] / dt;
-      s->work_fluid -= c->mass * change[i] * wall[i];
-      for (int a = 0; s->tled && a < 3; a++) s->answer[3 * node[a] + i] -= c->mass * near.weights[3 * t + a] * change[i];
-    }
+  if (s->tled) {
+    PetscCall(TLEDIsFree(s->tled, &is_free));
+    if (is_free) PetscCall(AngularMomentum(s, before));
+    PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
+    PetscCall(VecGetArray(V, &v));
   }
-  if (n_stopped && s->tled) PetscCall(TakeImpulses(s, s->answer, moment));
+  PetscCall(StopParticles(c, k, dt, &near, v, lost));
+  if (s->tled) PetscCall(VecRestoreArray(V, &v));
+  if (is_free) {
+    // impulses act where particles and nodes are at different instants: a free body gets the difference
+    PetscCall(AngularMomentum(s, after));
+    for (int i = 0; i < 3; i++) lost[i] -= after[i] - before[i];
+    PetscCall(CouplerAddRotation(s, lost));
+  }
   PetscCall(PetscFree5(near.at, near.distance, near.weights, near.winding, near.triangle));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -91,12 +91,11 @@ BY_EXTERN PetscErrorCode SPHPredict(SPH sph, PetscReal dt);
 BY_EXTERN PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, void *ctx);
 BY_EXTERN PetscErrorCode SPHGetForces(SPH sph);
 BY_EXTERN PetscErrorCode SPHAdvance(SPH sph, PetscReal dt);
-/* SPHAdvance in two halves, between which a coupler stops particles at its bodies: v, then x. SPHStopLacking: what the speed of a particle away
-   from a surface, at distance `gap` [m] at the start of the step, lacks for the step not to end inside [m/s] */
+/* SPHAdvance in two halves, v then x, between which a coupler stops particles at its bodies */
+#define SPH_STOP_GAP 0.05 /* [dx] no particle ends a step nearer to a wall or body; the first layer of still water stands at 0.15 to 0.25 */
 BY_EXTERN PetscErrorCode SPHKick(SPH sph, PetscReal dt);
 BY_EXTERN PetscErrorCode SPHDrift(SPH sph, PetscReal dt);
-BY_EXTERN PetscErrorCode SPHAddVelocity(SPH sph, PetscInt particle, const PetscReal change[3]);
-BY_EXTERN PetscReal      SPHStopLacking(SPH sph, PetscReal gap, PetscReal speed, PetscReal dt);
+BY_EXTERN PetscErrorCode SPHStop(SPH sph, PetscInt particle, const PetscReal change[3], const PetscReal shift[3]);
 
 /* Factor c = d phi_i / d phi_ik of the union for touched particle t of surface k (length n_touched): G_ik = rho0 c grad_ik.
    Valid after SPHSetContacts; the compliant-wall operator of the coupler needs it. */

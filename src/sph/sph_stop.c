@@ -4,11 +4,10 @@
    coupler does the same at the triangles of bodies (coupler_stop.c). */
 #include "sph_impl.h"
 
-#define SPH_STOP_GAP  0.05 /* [dx] the first layer of still water stands at 0.15 to 0.25 */
 #define SPH_STOP_BACK 0.1  /* part of a penetration that is taken back in one step        */
 
 /* what the speed away from a wall at distance `gap` at the start of the step lacks for the step to end at the stop; 0 when nothing */
-PetscReal SPHStopLacking(SPH sph, PetscReal gap, PetscReal speed, PetscReal dt)
+static PetscReal Lacking(SPH sph, PetscReal gap, PetscReal speed, PetscReal dt)
 {
   const PetscReal stop  = SPH_STOP_GAP * sph->params.spacing;
   const PetscReal least = gap >= stop ? (stop - gap) / dt : SPH_STOP_BACK * (stop - gap) / dt;
@@ -33,7 +32,7 @@ void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt)
 
         if (!(sph->walls >> k & 1)) continue;
         gap     = SPHPlaneDistance(sph, k, sph->x + 3 * i, &sign);
-        lacking = SPHStopLacking(sph, gap, sign * sph->v[3 * i + k / 2], dt);
+        lacking = Lacking(sph, gap, sign * sph->v[3 * i + k / 2], dt);
         sph->v[3 * i + k / 2] += sign * lacking;
         impulse[k] -= sign * lacking;
       }

@@ -212,10 +212,13 @@ PetscErrorCode SPHAdvance(SPH sph, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* change the velocity of particle i between SPHKick() and SPHDrift(), where it meets a body [m/s] */
-PetscErrorCode SPHAddVelocity(SPH sph, PetscInt i, const PetscReal change[3])
+/* between SPHKick() and SPHDrift(): change the velocity [m/s] of a particle that meets a body, and move it [m] */
+PetscErrorCode SPHStop(SPH sph, PetscInt particle, const PetscReal change[3], const PetscReal shift[3])
 {
   PetscFunctionBegin;
-  for (int k = 0; k < 3; k++) sph->v[3 * i + k] += change[k];
+  for (int k = 0; k < 3; k++) {
+    sph->v[3 * particle + k] += change[k];
+    sph->x[3 * particle + k] += shift[k];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
