@@ -152,7 +152,7 @@ static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
   }
   for (int m = 0; m < 6; m++) b->S[m] = S[m];
   b->bend    = ProxyShapeBend(S);
-  b->offset  = q->offset[i];
+  b->offset  = q->offset[i] - (p->params.kernel == PROXY_KERNEL_HALF_SPACE ? p->inset : 0.0);
   p->area[i] = b->weight = area;
 }
 
@@ -288,7 +288,7 @@ PetscErrorCode ProxySetUp(Proxy p)
   ByCall(ierr);
 
   p->factor = p->params.factor;
-  p->inset  = (p->params.inset < 0.0 ? 0.5 : p->params.inset)*p->fluid.dx;
+  p->inset  = (p->params.inset >= 0.0 ? p->params.inset : p->params.kernel == PROXY_KERNEL_HALF_SPACE ? PROXY_INSET_HALF_SPACE : PROXY_INSET_ELLIPSOID)*p->fluid.dx;
   if (p->factor == 0.0) {
     const double ratio = p->fluid.h/p->fluid.dx;
     p->factor = p->params.kernel == PROXY_KERNEL_HALF_SPACE ? ProxyFactorHalfSpace(p->fluid.kernel, ratio) : ProxyFactorEllipsoid(ratio);

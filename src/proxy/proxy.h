@@ -15,7 +15,7 @@ typedef enum { PROXY_RANGE_ROBUST, PROXY_RANGE_MINMAX } ProxyRange;
 typedef struct {
   PetscBool adaptive;            /* density follows curvature; false = uniform, kappa-bar = 1                */
   PetscReal eta_min, eta_max;    /* range of the normalised curvature                                        */
-  PetscReal inset;               /* ellipsoid kernel: proxies inward by this many dx; negative = calibrated  */
+  PetscReal inset;               /* the kernel's surface beneath the mesh by this many dx; negative = calibrated */
   PetscReal factor;              /* on the boundary volume; 0 = calibrated value of kernel and h/dx          */
   PetscReal resample_tolerance;  /* edge or area ratio change that triggers resampling; 0 = every step       */
   PetscReal feature_angle;       /* [degree] dihedral beyond which an edge is sharp                          */

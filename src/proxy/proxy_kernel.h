@@ -17,6 +17,11 @@
 /* the osculating surface is used from its own side only: weights end where 1 + c z0 falls from this to 0 (a ball's equator) */
 #define PROXY_SIDE_FADE 0.5
 
+/* how far beneath the mesh the profile has its surface, in dx. Half-space: settled water stands this much off the surfaces of held balls
+   and cubes (R = 5 and 10 dx, side 10 dx: 0.04 to 0.06; docs/verification/proxy-slice.md). Ellipsoid: method 2. */
+#define PROXY_INSET_HALF_SPACE 0.045
+#define PROXY_INSET_ELLIPSOID 0.5
+
 /* one proxy as the pair formulas see it */
 typedef struct {
   double x[3];        /* position [m]; of the ellipsoid kernel: inset along -n                                          */
@@ -24,7 +29,7 @@ typedef struct {
   double S[6];        /* shape operator [1/m]                                                                           */
   double bend;        /* c = tr S^3/tr S^2 [1/m], ProxyShapeBend(): the curvature of spheres and cylinders               */
   double e[3];        /* unit tangent; ellipsoid: of radius a                                                           */
-  double offset;      /* mean height [m] of the surface that it stands for above its osculating surface                 */
+  double offset;      /* mean height [m] of the surface that it stands for above its osculating surface, less the inset */
   double radius[2];   /* half-space: tangential radius h/kappa-bar [m], unused; ellipsoid: a, b [m] (c = h)             */
   double extent[8];   /* half-space: how far its part of the surface reaches from x in the directions e, m, (e + m)/sqrt 2,
                          (e - m)/sqrt 2, m = n x e, and then in the opposite ones [m]                                   */

@@ -14,7 +14,7 @@ const Key ProxyKeys[] = {
   {"kernel",             KEY_CHOICE, AT(kernel),             "",       "half_space", 0, 0,     0, Kernels, "what a proxy does to the fluid: half-space profile, or the paper's ellipsoid"},
   {"measure",            KEY_CHOICE, AT(measure),            "",       "gaussian",   0, 0,     0, Measures, "curvature that the density follows: largest principal curvature times support radius, or the paper's Gaussian"},
   {"range",              KEY_CHOICE, AT(range),              "",       "robust",     0, 0,     0, Ranges,  "Gaussian curvatures that map onto eta_min..eta_max: percentiles bounded by the support radius, or the paper's extremes"},
-  {"inset",              KEY_REAL,   AT(inset),              "dx",     "-1",         -1, 1,    0, NULL,    "ellipsoid kernel: proxies beneath the surface by this many spacings; negative = calibrated (0.5)"},
+  {"inset",              KEY_REAL,   AT(inset),              "dx",     "-1",         -1, 1,    0, NULL,    "the wetted surface of the kernel lies beneath the mesh by this many spacings; negative = calibrated (half_space 0.045, ellipsoid 0.5)"},
   {"factor",             KEY_REAL,   AT(factor),             "1",      "0",          0, 4,     0, NULL,    "factor on the boundary volume; 0 = calibrated for kernel and support"},
   {"resample_tolerance", KEY_REAL,   AT(resample_tolerance), "1",      "0.1",        0, 10,    0, NULL,    "change of an edge or area ratio that samples the surface afresh; 0 = every step"},
   {"feature_angle",      KEY_REAL,   AT(feature_angle),      "degree", "40",         0, 180,   KEY_LO_OPEN, NULL, "edges with a larger angle between their triangles are sharp"},

@@ -26,6 +26,7 @@ static inline Proxy FixtureProxy(const Shape *s, double eta, int kernel, double 
   params->eta_min = params->eta_max = eta;
   params->kernel  = kernel;
   params->factor  = factor;
+  params->inset   = kernel == PROXY_KERNEL_HALF_SPACE ? 0.0 : -1.0; // the profile itself, without its calibrated shift
   assert_petsc(ProxySetSurface(proxy, s->n_nodes, s->x, s->n_triangles, s->triangles));
   assert_petsc(ProxySetFluidScale(proxy, fluid ? fluid : &usual));
   assert_petsc(ProxySetUp(proxy));

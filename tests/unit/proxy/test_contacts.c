@@ -28,6 +28,25 @@ static void a_flat_wall_is_lambda_at_every_sampling(void **state)
   }
 }
 
+/* the calibrated inset moves the whole profile: lambda at z + 0.045 dx */
+static void the_inset_shifts_the_wall(void **state)
+{
+  const ProxyFluid fluid = FixtureFluid();
+  Shape            s = ShapePlate(4, 4, 12, 12, 0.3);
+  Proxy            p;
+  (void)state;
+  assert_petsc(ProxyCreate(PETSC_COMM_SELF, "body", &p));
+  assert_petsc(ProxySetSurface(p, s.n_nodes, s.x, s.n_triangles, s.triangles));
+  assert_petsc(ProxySetFluidScale(p, &fluid));
+  assert_petsc(ProxySetUp(p));
+  for (double z = 0.0; z < 1.0; z += 0.07) {
+    const double x[3] = {0.2, -0.3, z};
+    assert_close(FixturePhi(p, x, NULL), ProxyFactorHalfSpace(SPH_CUBIC, 2.0)*SPHHalfSpace(SPH_CUBIC, z + 0.045*0.5, 1.0), 1e-14, 1.0);
+  }
+  assert_petsc(ProxyDestroy(&p));
+  ShapeFree(&s);
+}
+
 /* R = 5 and 10 dx, distances 0 .. h, kappa-bar 1, 0.6, 0.4: the ball that has the volume of the mesh */
 static void a_ball_is_the_kernels_part_in_the_ball_at_every_sampling(void **state)
 {
@@ -370,7 +389,7 @@ static void ellipsoids_are_one_sided_and_do_not_reach_beyond_h(void **state)
   ShapeFree(&s);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_flat_wall_is_lambda_at_every_sampling), cmocka_unit_test(a_ball_is_the_kernels_part_in_the_ball_at_every_sampling),
+CHECK_MAIN(cmocka_unit_test(a_flat_wall_is_lambda_at_every_sampling), cmocka_unit_test(the_inset_shifts_the_wall), cmocka_unit_test(a_ball_is_the_kernels_part_in_the_ball_at_every_sampling),
            cmocka_unit_test(box_edges_and_corners_are_within_the_product_rules_error), cmocka_unit_test(gradients_are_exact_on_curved_shapes),
            cmocka_unit_test(an_inner_corner_is_two_planar_walls), cmocka_unit_test(a_thin_sheet_keeps_its_sides_apart),
            cmocka_unit_test(nothing_is_felt_beyond_the_support), cmocka_unit_test(phi_integrates_to_the_kernels_exchange_across_the_surface),
