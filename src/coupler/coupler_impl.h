@@ -92,7 +92,7 @@ PETSC_INTERN PetscErrorCode CouplerAddProbes(Coupler coupler, const Names *names
 PETSC_INTERN PetscErrorCode CouplerProbeHeaders(Coupler coupler, PetscInt *n, char headers[][2 * BY_NAME_MAX]);
 PETSC_INTERN PetscErrorCode CouplerProbeRow(Coupler coupler, PetscReal row[]);
 /* coupler_state.c */
-PETSC_INTERN PetscErrorCode CouplerSave(Coupler coupler, const char directory[], PetscInt n_outputs, const char scene[]);
-PETSC_INTERN PetscErrorCode CouplerLoad(Coupler coupler, const char directory[], PetscInt *n_outputs);
+PETSC_INTERN PetscErrorCode CouplerSave(Coupler coupler, const char directory[], const char scene[]);
+PETSC_INTERN PetscErrorCode CouplerLoad(Coupler coupler, const char directory[]);
 
 #endif

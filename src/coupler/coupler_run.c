@@ -45,7 +45,7 @@ static PetscErrorCode Save(Run *run)
 
   PetscFunctionBegin;
   PetscCall(CouplerTimer(c, N_PHASES));
-  ByCall(CouplerSave(c, run->params.directory, run->n_outputs, run->scene_text));
+  ByCall(CouplerSave(c, run->params.directory, run->scene_text));
   PetscCall(CouplerTimer(c, PHASE_OUTPUT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -142,7 +142,7 @@ static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
   PetscCall(ierr);
   PetscCall(CouplerSetUp(c));
   if (resume) {
-    ByCall(CouplerLoad(c, resume, &run->n_outputs));
+    ByCall(CouplerLoad(c, resume));
     PetscCall(PetscStrcmp(resume, run->params.directory, &run->same_directory));
   }
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/scene.yaml", run->params.directory));
@@ -156,8 +156,8 @@ static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
       PetscCall(CouplerUpdateContacts(c));
     }
     ByCall(CouplerResultsWrite(c, &run->results));
-    run->n_outputs = 1;
   }
+  run->n_outputs       = 1 + (PetscInt)PetscFloorReal(c->time / run->params.output_every + 1e-6);
   run->next_checkpoint = c->time + run->params.checkpoint_every;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

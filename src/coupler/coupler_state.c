@@ -72,21 +72,18 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
 }
 
 /* write DIRECTORY/checkpoint.h5: everything a step reads */
-PetscErrorCode CouplerSave(Coupler c, const char directory[], PetscInt n_outputs, const char scene[])
+PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[])
 {
   Checkpoint file;
   PetscReal  clock[3];
-  PetscInt   counts[2];
 
   PetscFunctionBegin;
   ByCall(CheckpointCreate(directory, &file));
   clock[0]  = c->time;
   clock[1]  = c->dt;
   clock[2]  = c->iterations_sum;
-  counts[0] = c->step;
-  counts[1] = n_outputs;
   ByCall(CheckpointWriteReal(file, "run/clock", 3, clock));
-  ByCall(CheckpointWriteInt(file, "run/counts", 2, counts));
+  ByCall(CheckpointWriteInt(file, "run/step", 1, &c->step));
   ByCall(CheckpointWriteString(file, "run/scene", scene));
   if (c->sph) {
     PetscInt         n;
@@ -123,21 +120,18 @@ static PetscErrorCode LoadFluid(Coupler c, Checkpoint file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CouplerLoad(Coupler c, const char directory[], PetscInt *n_outputs)
+PetscErrorCode CouplerLoad(Coupler c, const char directory[])
 {
   Checkpoint file;
   PetscReal  clock[3];
-  PetscInt   counts[2];
 
   PetscFunctionBegin;
   ByCall(CheckpointOpen(directory, &file));
   ByCall(CheckpointReadReal(file, "run/clock", 3, clock));
-  ByCall(CheckpointReadInt(file, "run/counts", 2, counts));
+  ByCall(CheckpointReadInt(file, "run/step", 1, &c->step));
   c->time           = clock[0];
   c->dt             = clock[1];
   c->iterations_sum = clock[2];
-  c->step           = counts[0];
-  *n_outputs        = counts[1];
   if (c->sph) {
     ByCall(LoadFluid(c, file));
     PetscCall(SPHSetTimeStep(c->sph, c->dt));

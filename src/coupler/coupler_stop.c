@@ -89,7 +89,7 @@ static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscRe
                         const PetscReal mass[], const PetscBool constrained[], PetscReal v[])
 {
   const PetscInt *node    = &near->triangles[3 * near->triangle[t]];
-  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), J;
+  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), work = 0.0, J;
 
   for (int a = 0; s->tled && a < 3; a++) {
     const PetscReal w = near->weights[3 * t + a];
@@ -103,10 +103,12 @@ static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscRe
     for (int i = 0; i < 3; i++) {
       const PetscReal gain = -J * near->weights[3 * t + a] / mass[node[a]] * normal[i];
 
-      s->work_solid += mass[node[a]] * gain * (v[3 * node[a] + i] + 0.5 * gain);
+      work += mass[node[a]] * gain * (v[3 * node[a] + i] + 0.5 * gain);
       v[3 * node[a] + i] += gain;
     }
   }
+  s->work_solid += work;
+  s->work_fluid += work; // what is lost besides is heat, not work
   return J;
 }
 
@@ -140,7 +142,6 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
       shift[i]  = PetscMax(0.0, stop - gap - dt * J / c->mass) * normal[i];
       vi[i] += change[i];
       s->total[i] -= c->mass * change[i] / dt;
-      s->work_fluid -= c->mass * change[i] * (vi[i] - 0.5 * change[i]);
     }
     PetscCall(SPHStop(c->sph, q->particle[t], change, shift));
     Cross3(&q->position[3 * t], change, m);

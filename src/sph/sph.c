@@ -188,7 +188,6 @@ static PetscErrorCode AllocateState(SPH sph)
 
   PetscCall(PetscCalloc6(SPH_CHUNKS(n) * SPH_SUMS, &sph->partial, n, &sph->order, n, &sph->rho, 3 * n, &sph->v_star, 3 * n, &sph->accel, n, &sph->rho_pairs));
   PetscCall(PetscCalloc6(n, &sph->open, n, &sph->open_surfaces, 3 * n, &sph->G_planes, 3 * n, &sph->G, n, &sph->rate, n, &sph->wall_rate));
-  PetscCall(PetscCalloc1(n, &sph->wall_excess));
   PetscCall(PetscCalloc6(n, &sph->rhs, n, &sph->root, n, &sph->scale, n, &sph->y, n, &sph->residual, n, &sph->direction));
   PetscCall(PetscCalloc4(n, &sph->Adirection, n, &sph->p_tilde, n, &sph->response, n, &sph->mode));
   if (sph->params.viscosity > 0) PetscCall(PetscCalloc1(n, &sph->friction_planes));
@@ -232,8 +231,6 @@ PetscErrorCode SPHSetUp(SPH sph)
     const PetscReal speed = PetscMax(sqrt(g * sph->h), Norm3(par->mean_velocity));
     sph->relax_time       = speed > 0 ? 0.5 * sph->h / speed : -1.0;
   }
-  sph->phi_lone    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.3 * par->spacing, sph->h);
-  sph->phi_full    = sph->wall_factor * SPHHalfSpace(par->kernel, 0.1 * par->spacing, sph->h);
   sph->filter_norm = SPHFilterNorm(grad2 * sph->mass * sph->mass);
   sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
 
@@ -293,7 +290,6 @@ PetscErrorCode SPHDestroy(SPH *sph)
   PetscCall(PetscFree6(s->open, s->open_surfaces, s->G_planes, s->G, s->rate, s->wall_rate));
   PetscCall(PetscFree6(s->rhs, s->root, s->scale, s->y, s->residual, s->direction));
   PetscCall(PetscFree4(s->Adirection, s->p_tilde, s->response, s->mode));
-  PetscCall(PetscFree(s->wall_excess));
   PetscCall(PetscFree(s->friction_planes));
   PetscCall(PetscFree3(s->loops.cell, s->loops.start, s->loops.count));
   PetscCall(PetscFree4(s->loops.near_x, s->loops.pressure, s->loops.vector, s->loops.wall));

@@ -38,7 +38,6 @@ struct _p_SPH {
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
-  PetscReal phi_lone, phi_full;      /* of SPHWallBound: s lambda at 0.3 and at 0.1 dx [1] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
@@ -52,7 +51,6 @@ struct _p_SPH {
   PetscReal *rho_pairs;              /* n, sum_j m W_ij                                  */
   PetscReal *open;                   /* n, prod_k (1 - phi_k) over planes, then over all */
   PetscReal *open_surfaces;          /* n, the product over surfaces alone               */
-  PetscReal *wall_excess;            /* n, rho0 max_k (phi_k - bound) over planes and surfaces [kg/m^3] */
   PetscReal *G_planes, *G;           /* n x 3 [kg/m^4], planes alone and the union       */
   PetscReal *rate;                   /* n, D v* without the walls' own motion [kg/(m^3 s)] */
   PetscReal *wall_rate;              /* n, sum_b rho0 c share . v_b                      */
@@ -95,7 +93,6 @@ PETSC_INTERN void SPHSumPartials(SPH sph, int n_sums, PetscReal sums[]);
 
 /* sph_walls.c */
 PETSC_INTERN PetscErrorCode SPHFindPlanes_Internal(SPH sph);
-PETSC_INTERN PetscErrorCode SPHWallExcess_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHWallRate_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
 /* distance [m] of a position from plane k (0..5), positive inside; gradient +-1 along its axis in *sign */

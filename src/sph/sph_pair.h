@@ -35,16 +35,6 @@ BY_HD SPH_REAL SPHPairViscosityMorris(SPH_REAL mu_over_rho2, SPH_REAL x_dot_grad
   return (SPH_REAL)2 * mu_over_rho2 * x_dot_gradient / (r2 + (SPH_REAL)0.01*h*h);
 }
 
-/* part phi of its kernel that a single wall may take from a particle, so that none sinks into a wall: density alone would let a lone
-   particle sink to phi = 0.68, a fifth of h inside. `full`, phi at 0.1 dx, is for a particle whose neighbours fill at least 0.52 of what the
-   other walls leave open; `lone`, phi at 0.3 dx, for the particle alone, which fills 0.32 (cubic spline, h = 2 dx). Farther out `full` would
-   press on the first layer along edges and keep water in motion: floor force noise 0.4 % at 0.1 dx, 1.8 % at 0.15 dx. */
-BY_HD SPH_REAL SPHWallBound(SPH_REAL filled, SPH_REAL lone, SPH_REAL full)
-{
-  const SPH_REAL t = (filled - (SPH_REAL)0.32) * (SPH_REAL)5;
-  return t <= (SPH_REAL)0 ? lone : t >= (SPH_REAL)1 ? full : lone + t * (full - lone);
-}
-
 /* part of a relative density error e that one step corrects: dt/tau keeps still water quiet, but leaves a compression of some per cent, as an
    impact makes it within a few steps, standing for tau. So compression beyond a per cent is corrected faster, (1 + (e/0.01)^2) dt/tau, up to
    half of it in a step. Measured on a dam break against a flap: largest compression 12 % without, 2.9 % with it, energy the same. */

@@ -49,7 +49,7 @@ static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
   for (int i = 0; i < n; i++) {
     // a particle that touches nothing has no pressure
     const PetscReal root = sph->root[i] > tiny ? sqrt(sph->root[i]) : 0.0, S = root > 0 ? 1.0 / root : 0.0;
-    const PetscReal excess = PetscMax(sph->rho[i] - rho0, sph->wall_excess[i]);
+    const PetscReal excess = sph->rho[i] - rho0;
     const PetscReal b      = SPHSourceShare(excess / rho0, relax) * excess + dt * (sph->rate[i] - sph->wall_rate[i]);
 
     sph->root[i]  = root;

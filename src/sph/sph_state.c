@@ -140,7 +140,6 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
   for (PetscInt sweep = 0; sweep <= max_sweeps; sweep++) {
     ByCall(SPHUpdateNeighbors(sph));
     if (contacts) ByCall(contacts(ctx, sph));
-    PetscCall(SPHWallExcess_Internal(sph));
     for (PetscInt i = 0; i < n; i++) {
       sph->rho[i]  = sph->rho_pairs[i] + sph->params.density * (1.0 - sph->open[i]);
       sph->rate[i] = sph->wall_rate[i] = 0.0;

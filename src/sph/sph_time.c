@@ -114,7 +114,6 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
     sph->rho[i] = sph->rho_pairs[i] + rho0 * (1.0 - sph->open[i]);
     for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = sph->v[3 * i + k] + dt * a[k];
   }
-  PetscCall(SPHWallExcess_Internal(sph));
   if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
   if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
   sph->table->SetVelocity(&sph->loops, sph->v_star);

@@ -157,40 +157,6 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rho0 (phi - bound) of one wall, where the other walls leave `c` open [kg/m^3]; negative where the wall is far enough */
-static PetscReal WallExcess(SPH sph, int i, PetscReal phi, PetscReal c)
-{
-  const PetscReal rho0 = sph->params.density, filled = c > 0 ? sph->rho_pairs[i] / (rho0 * c) : 1.0;
-
-  return rho0 * (phi - SPHWallBound(filled, sph->phi_lone, sph->phi_full));
-}
-
-/* wall_excess = the largest excess over planes and surfaces, for the current contacts */
-PetscErrorCode SPHWallExcess_Internal(SPH sph)
-{
-  const int n = (int)sph->n;
-
-  PetscFunctionBegin;
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; i++) {
-    int       plane[6];
-    PetscReal phi[6], slope[6], d[6], excess = -sph->params.density;
-    const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
-
-    for (int k = 0; k < touched; k++) excess = PetscMax(excess, WallExcess(sph, i, phi[k], OtherPlanes(touched, phi, k) * sph->open_surfaces[i]));
-    sph->wall_excess[i] = excess;
-  }
-  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
-    const SPHContacts *q = &sph->contacts[s];
-#pragma omp parallel for schedule(static)
-    for (PetscInt t = 0; t < q->n_touched; t++) {
-      const PetscInt i    = q->particle[t];
-      sph->wall_excess[i] = PetscMax(sph->wall_excess[i], WallExcess(sph, (int)i, q->phi[t], sph->surfaces[s].union_factor[t]));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode SPHGetUnionFactors(SPH sph, PetscInt surface, const PetscReal *c[])
 {
   PetscFunctionBegin;

@@ -70,7 +70,7 @@ static void SolutionIsComplementary(void **state)
   for (int i = 0; i < 200; i++) sph->p_tilde[i] = sph->p[i] / (RHO0 * RHO0);
   Apply(sph, sph->p_tilde, Ap);
   for (int i = 0; i < 200; i++) {
-    const PetscReal e = PetscMax(sph->rho[i] - RHO0, sph->wall_excess[i]), b = SPHSourceShare(e / RHO0, dt / sph->relax_time) * e + dt * sph->rate[i], left = b - dt * dt * Ap[i];
+    const PetscReal e = sph->rho[i] - RHO0, b = SPHSourceShare(e / RHO0, dt / sph->relax_time) * e + dt * sph->rate[i], left = b - dt * dt * Ap[i];
 
     assert_true(sph->p[i] >= 0.0);
     worst = PetscMax(worst, sph->p[i] > 0 ? PetscAbsReal(left) : PetscMax(0.0, left));
@@ -171,7 +171,7 @@ static void ResponseEntersTheOperator(void **state)
   Apply(sph, sph->p_tilde, Ap);
   assert_petsc(RankOne(w, 200, sph->p_tilde, extra));
   for (int i = 0; i < 200; i++) {
-    const PetscReal e = PetscMax(sph->rho[i] - RHO0, sph->wall_excess[i]), b = SPHSourceShare(e / RHO0, dt / sph->relax_time) * e + dt * sph->rate[i], left = b - dt * dt * Ap[i] - extra[i];
+    const PetscReal e = sph->rho[i] - RHO0, b = SPHSourceShare(e / RHO0, dt / sph->relax_time) * e + dt * sph->rate[i], left = b - dt * dt * Ap[i] - extra[i];
     worst             = PetscMax(worst, sph->p[i] > 0 ? PetscAbsReal(left) : PetscMax(0.0, left));
   }
   assert_close(worst, 0.0, 1e-6, RHO0);
