@@ -26,6 +26,11 @@ static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/state", s->name));
   ByCall(CheckpointWriteReal(file, name, n_state, state));
   PetscCall(PetscFree(state));
+  if (s->proxy) {
+    PetscCall(ProxyGetSampling(s->proxy, &values));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sampling", s->name));
+    ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, values));
+  }
   sums[0] = s->work_fluid;
   sums[1] = s->work_solid;
   sums[2] = s->n_substeps_sum;
@@ -62,6 +67,13 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
   s->work_solid     = sums[1];
   s->n_substeps_sum = sums[2];
   s->n_proxies_sum  = sums[3];
+  if (s->proxy) {
+    PetscCall(PetscMalloc1(3 * s->n_nodes, &values));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sampling", s->name));
+    ByCall(CheckpointReadReal(file, name, 3 * s->n_nodes, values));
+    PetscCall(ProxySetSampling(s->proxy, values));
+    PetscCall(PetscFree(values));
+  }
   PetscCall(TLEDGetState(s->tled, &n_state, NULL));
   PetscCall(PetscMalloc1(n_state, &state));
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/state", s->name));
@@ -75,7 +87,7 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
 PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[])
 {
   Checkpoint file;
-  PetscReal  clock[3];
+  PetscReal  clock[3], internals[SPH_INTERNALS];
 
   PetscFunctionBegin;
   ByCall(CheckpointCreate(directory, &file));
@@ -96,6 +108,8 @@ PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[]
     ByCall(CheckpointWriteReal(file, "fluid/position", 3 * n, x));
     ByCall(CheckpointWriteReal(file, "fluid/velocity", 3 * n, v));
     ByCall(CheckpointWriteReal(file, "fluid/pressure", n, p));
+    PetscCall(SPHGetInternals(c->sph, internals));
+    ByCall(CheckpointWriteReal(file, "fluid/internals", SPH_INTERNALS, internals));
   }
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(SaveBody(file, &c->surface[k]));
   ByCall(CheckpointCommit(&file));
@@ -105,7 +119,7 @@ PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[]
 static PetscErrorCode LoadFluid(Coupler c, Checkpoint file)
 {
   PetscInt  *id, n;
-  PetscReal *x, *v, *p;
+  PetscReal *x, *v, *p, internals[SPH_INTERNALS];
 
   PetscFunctionBegin;
   PetscCall(CheckpointGetSize(file, "fluid/id", &n));
@@ -116,6 +130,8 @@ static PetscErrorCode LoadFluid(Coupler c, Checkpoint file)
   ByCall(CheckpointReadReal(file, "fluid/velocity", 3 * n, v));
   ByCall(CheckpointReadReal(file, "fluid/pressure", n, p));
   PetscCall(SPHSetState(c->sph, n, id, x, v, p));
+  ByCall(CheckpointReadReal(file, "fluid/internals", SPH_INTERNALS, internals));
+  PetscCall(SPHSetInternals(c->sph, internals));
   PetscCall(PetscFree4(id, x, v, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -132,10 +148,7 @@ PetscErrorCode CouplerLoad(Coupler c, const char directory[])
   c->time           = clock[0];
   c->dt             = clock[1];
   c->iterations_sum = clock[2];
-  if (c->sph) {
-    ByCall(LoadFluid(c, file));
-    PetscCall(SPHSetTimeStep(c->sph, c->dt));
-  }
+  if (c->sph) ByCall(LoadFluid(c, file));
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(LoadBody(file, &c->surface[k]));
   PetscCall(CheckpointClose(&file));
   PetscFunctionReturn(PETSC_SUCCESS);

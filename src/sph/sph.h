@@ -85,8 +85,6 @@ BY_EXTERN PetscErrorCode SPHDestroy(SPH *sph);
 BY_EXTERN PetscErrorCode SPHUpdateNeighbors(SPH sph);
 BY_EXTERN PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts[]);
 BY_EXTERN PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt);
-/* restart: the last step taken [s], from which the growth of the adaptive step is limited */
-BY_EXTERN PetscErrorCode SPHSetTimeStep(SPH sph, PetscReal dt);
 BY_EXTERN PetscErrorCode SPHPredict(SPH sph, PetscReal dt);
 BY_EXTERN PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, void *ctx);
 BY_EXTERN PetscErrorCode SPHGetForces(SPH sph);

@@ -57,13 +57,6 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SPHSetTimeStep(SPH sph, PetscReal dt)
-{
-  PetscFunctionBegin;
-  sph->dt_last = dt;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*
   Body force that holds the mean velocity U at its target U0: a proportional and an integral part,
     f = 3 (U0 - U)/T + I,  dI/dt = 4 (U0 - U)/T^2,  T = h/|U0|
