@@ -83,6 +83,7 @@ PETSC_INTERN PetscErrorCode CouplerResponseDestroy(CouplerResponse *response);
 /* coupler.c */
 PETSC_INTERN PetscErrorCode CouplerUpdateContacts(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerTimer(Coupler coupler, CouplerPhase phase);
+PETSC_INTERN PetscErrorCode CouplerAngularMomentum(CouplerSurface *s, PetscReal L[3], PetscReal center[3]);
 PETSC_INTERN PetscErrorCode CouplerAddRotation(CouplerSurface *s, const PetscReal lost[3]);
 PETSC_INTERN void           CouplerMoment(PetscInt n, const PetscReal x[], const PetscReal f[], PetscReal moment[3]);
 /* coupler_stop.c */

@@ -75,6 +75,27 @@ static PetscErrorCode CheckInside(const char key[], const DomainParams *domain, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces of the fluid and the changing substep feed the highest modes of the mesh, which no substep resolves; without any damping they
+   grow until elements break. A body in water that names no stiffness damping gets a twentieth of the critical step: a twentieth of
+   critical damping for the highest mode (explicit codes' linear bulk viscosity), falling with the frequency, so that the modes
+   that one sees have next to none. */
+static PetscErrorCode DampMesh(TLED tled, const char name[])
+{
+  TLEDParams *params;
+  PetscReal   critical;
+  PetscBool   named;
+  char        option[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_stiffness_damping", name));
+  PetscCall(PetscOptionsHasName(NULL, NULL, option, &named));
+  if (named) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TLEDGetParams(tled, &params));
+  ByCall(TLEDGetCriticalStep(tled, &critical));
+  if (critical < PETSC_MAX_REAL) params->stiffness_damping = 0.05 * critical;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams *domain)
 {
   TLED             tled;
@@ -95,6 +116,7 @@ static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams
   PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));
   PetscCall(TLEDGetMesh(tled, &tets, &X));
   if (c->sph) {
+    ByCall(DampMesh(tled, name));
     PetscCall(SPHGetParams(c->sph, &fluid));
     PetscCall(PetscSNPrintf(key, sizeof(key), "%s.mesh", name));
     ByCall(CheckInside(key, domain, fluid->spacing, n_nodes, X));

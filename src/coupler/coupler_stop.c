@@ -152,19 +152,6 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sum_a m_a x_a x v_a of a body [kg m^2/s] */
-static PetscErrorCode AngularMomentum(CouplerSurface *s, PetscReal L[3])
-{
-  const PetscReal *mass, *x, *v;
-
-  PetscFunctionBegin;
-  PetscCall(TLEDGetMass(s->tled, &mass));
-  PetscCall(TLEDGetPositions(s->tled, &x, &v));
-  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) s->answer[i] = mass[i / 3] * v[i];
-  CouplerMoment(s->n_nodes, x, s->answer, L);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* particles of surface k, after the kick of the fluid and the step of the body */
 static PetscErrorCode StopAtSurface(Coupler c, PetscInt k, PetscReal dt)
 {
@@ -179,7 +166,7 @@ static PetscErrorCode StopAtSurface(Coupler c, PetscInt k, PetscReal dt)
   PetscCall(FindInside(&near));
   if (s->tled) {
     PetscCall(TLEDIsFree(s->tled, &is_free));
-    if (is_free) PetscCall(AngularMomentum(s, before));
+    if (is_free) PetscCall(CouplerAngularMomentum(s, before, NULL));
     PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
     PetscCall(VecGetArray(V, &v));
   }
@@ -187,7 +174,7 @@ static PetscErrorCode StopAtSurface(Coupler c, PetscInt k, PetscReal dt)
   if (s->tled) PetscCall(VecRestoreArray(V, &v));
   if (is_free) {
     // impulses act where particles and nodes are at different instants: a free body gets the difference
-    PetscCall(AngularMomentum(s, after));
+    PetscCall(CouplerAngularMomentum(s, after, NULL));
     for (int i = 0; i < 3; i++) lost[i] -= after[i] - before[i];
     PetscCall(CouplerAddRotation(s, lost));
   }

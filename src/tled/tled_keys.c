@@ -22,7 +22,7 @@ const Key TLEDKeys[] = {
     ROW(prescribed_velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "velocity of the groups in prescribed"),
     ROW(wetted, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "surface groups that touch the fluid; none named: the whole boundary"),
     ROW(damping, KEY_REAL, "1/s", "0", 0, 1e9, 0, NULL, "mass-proportional damping"),
-    ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; shortens the stable step"),
+    ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; a body in water that does not name it has 0.05 of its critical step"),
     ROW(safety, KEY_REAL, "1", "0.9", 0, 1, KEY_LO_OPEN, NULL, "time step over the critical time step"),
     ROW(scale, KEY_REAL, "1", "1", 0, 1e9, KEY_LO_OPEN, NULL, "factor on the mesh's coordinates"),
     ROW(translate, KEY_VEC3, "m", "0,0,0", -1e9, 1e9, 0, NULL, "shift of the mesh after scaling"),
