@@ -72,15 +72,15 @@ static void FloorOfProxiesIsThePlane(void **state)
   PetscReal forces[18], other[18];
 
   (void)state;
-  for (int s = 0; s < 4; s++) {
-    OneStep(a, 1e-3);
+  for (int s = 0; s < 8; s++) {
+    OneStep(a, 2e-4);
     assert_petsc(SPHUpdateNeighbors(b));
     Touch(b, 2, &floor);
     assert_petsc(SPHSetContacts(b, 1, &floor.contacts));
-    assert_petsc(SPHPredict(b, 1e-3));
-    assert_petsc(SPHSolvePressure(b, 1e-3, NULL, NULL));
+    assert_petsc(SPHPredict(b, 2e-4));
+    assert_petsc(SPHSolvePressure(b, 2e-4, NULL, NULL));
     assert_petsc(SPHGetForces(b));
-    assert_petsc(SPHAdvance(b, 1e-3));
+    assert_petsc(SPHAdvance(b, 2e-4));
   }
   for (int i = 0; i < 3 * 175; i++) assert_close(a->x[i], b->x[i], 1e-8, 0.01); // the distance from lambda is found to 1e-6 h
   assert_petsc(SPHGetWallForces(a, forces));
