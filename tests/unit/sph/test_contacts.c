@@ -56,6 +56,7 @@ static SPH Water(unsigned walls, PetscReal viscosity)
   SPH             sph = NewFluid(0.01);
 
   sph->params.viscosity = viscosity;
+  sph->params.tolerance = 1e-11; // what the solver leaves is not compared
   assert_petsc(SPHSetDomain(sph, lo, hi, walls, 0));
   assert_petsc(SPHSetGravity(sph, g));
   AddLattice(sph, 5, 5, 7, 0.01, 0.1, NULL);
@@ -72,7 +73,7 @@ static void FloorOfProxiesIsThePlane(void **state)
   PetscReal forces[18], other[18];
 
   (void)state;
-  for (int s = 0; s < 8; s++) {
+  for (int s = 0; s < 2; s++) {
     OneStep(a, 2e-4);
     assert_petsc(SPHUpdateNeighbors(b));
     Touch(b, 2, &floor);
