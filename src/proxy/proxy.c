@@ -291,7 +291,7 @@ PetscErrorCode ProxySetUp(Proxy p)
   p->inset  = (p->params.inset >= 0.0 ? p->params.inset : p->params.kernel == PROXY_KERNEL_HALF_SPACE ? PROXY_INSET_HALF_SPACE : PROXY_INSET_ELLIPSOID)*p->fluid.dx;
   if (p->factor == 0.0) {
     const double ratio = p->fluid.h/p->fluid.dx;
-    p->factor = p->params.kernel == PROXY_KERNEL_HALF_SPACE ? ProxyFactorHalfSpace(p->fluid.kernel, ratio) : ProxyFactorEllipsoid(ratio);
+    p->factor = p->params.kernel == PROXY_KERNEL_HALF_SPACE ? SPHWallFactor(p->fluid.kernel, ratio) : ProxyFactorEllipsoid(ratio);
   }
   PetscCall(ProxyGeometryCreate(&p->surface, &p->geometry));
   PetscCall(PetscMalloc1(p->surface.n_nodes, &p->node_weight));

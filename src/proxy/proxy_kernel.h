@@ -45,16 +45,6 @@ typedef struct {
   double cover, grad_cover[3];   /* A w2 without the fades: its sum is 1 inside a patch, 1/2 on a straight border */
 } ProxyPair;
 
-/* Factor s on the boundary volume that puts the wetted surface where the mesh is (method 2). Half-space profile: the same as of planar walls,
-   so that a proxied floor is a planar floor; by support h/dx = 1.5, 1.75 .. 3, linear between (docs/verification/fluid-slice.md). */
-BY_HD double ProxyFactorHalfSpace(int kernel, double h_over_dx)
-{
-  const double cubic[7] = {1.00, 1.00, 1.06, 1.14, 1.12, 1.12, 1.12};
-  const double at = h_over_dx < 1.5 ? 0.0 : h_over_dx > 3.0 ? 6.0 : 4.0*(h_over_dx - 1.5);
-  const int    i = at >= 5.0 ? 5 : (int)at;
-
-  return kernel == SPH_WENDLAND ? 1.06 : cubic[i] + (at - i)*(cubic[i + 1] - cubic[i]);
-}
 /* Ellipsoid inset by dx/2: 0.85 at h = 2 dx, measured on a prototype with the cubic spline (method 2); nearer to 1 as (dx/h)^2 */
 BY_HD double ProxyFactorEllipsoid(double h_over_dx)
 {

@@ -149,15 +149,6 @@ static PetscReal AtSupport(const PetscReal table[7], PetscReal support)
   return table[k] + (at - k) * (table[k + 1] - table[k]);
 }
 
-/* s of method 2: still water stands where a planar wall is within 0.03 dx for the cubic spline from 2 dx on, 0.08 dx for Wendland C2 from
-   2.5 dx on; below, volume is lost or gained in the bulk and no factor helps (docs/verification/fluid-slice.md) */
-static PetscReal CalibratedWallFactor(int kernel, PetscReal support)
-{
-  static const PetscReal factor[2][7] = {{1.00, 1.00, 1.06, 1.14, 1.12, 1.12, 1.12}, {1.06, 1.06, 1.06, 1.06, 1.06, 1.06, 1.06}};
-
-  return AtSupport(factor[kernel], support);
-}
-
 /* Part of the viscosity that the discrete Laplacian gives for a slow shear wave, summed over the points of a cubic lattice displaced
    at random by up to 0.2 dx along each axis, the disorder of settled flow. Dividing by it gives Poiseuille flow its own viscosity
    (tests/unit/sph/test_viscosity.c). */
@@ -224,7 +215,7 @@ PetscErrorCode SPHSetUp(SPH sph)
   }
   LatticeSums(par->kernel, par->spacing, sph->h, &W, &grad2);
   sph->mass        = par->density / W;
-  sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : CalibratedWallFactor(par->kernel, par->support);
+  sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : SPHWallFactor(par->kernel, par->support);
   sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, par->kernel, par->support);
   sph->relax_time  = par->relax_time;
   if (sph->relax_time == 0.0 && par->solver == SPH_SOLVER_PCG) {

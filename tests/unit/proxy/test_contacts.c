@@ -13,7 +13,7 @@ static void a_flat_wall_is_lambda_at_every_sampling(void **state)
         fluid.kernel     = kernel;
         Proxy p = FixtureProxy(&s, eta, PROXY_KERNEL_HALF_SPACE, 0.0, &fluid);
         for (int i = 0; i < 200; i++) {
-          const double x[3] = {2.0*sin(1.1*i), 2.0*sin(2.3*i), fmod(0.0137*i, 1.0)}, factor = ProxyFactorHalfSpace(kernel, 2.0);
+          const double x[3] = {2.0*sin(1.1*i), 2.0*sin(2.3*i), fmod(0.0137*i, 1.0)}, factor = SPHWallFactor(kernel, 2.0);
           double       g[3];
           // round-off, whatever mesh, spacing, place
           assert_close(FixturePhi(p, x, g), factor*SPHHalfSpace(kernel, x[2], 1.0), 1e-14, 1.0);
@@ -41,7 +41,7 @@ static void the_inset_shifts_the_wall(void **state)
   assert_petsc(ProxySetUp(p));
   for (double z = 0.0; z < 1.0; z += 0.07) {
     const double x[3] = {0.2, -0.3, z};
-    assert_close(FixturePhi(p, x, NULL), ProxyFactorHalfSpace(SPH_CUBIC, 2.0)*SPHHalfSpace(SPH_CUBIC, z + 0.045*0.5, 1.0), 1e-14, 1.0);
+    assert_close(FixturePhi(p, x, NULL), SPHWallFactor(SPH_CUBIC, 2.0)*SPHHalfSpace(SPH_CUBIC, z + 0.045*0.5, 1.0), 1e-14, 1.0);
   }
   assert_petsc(ProxyDestroy(&p));
   ShapeFree(&s);
