@@ -1,5 +1,5 @@
 /* bench_sph.c - speed and error of the fluid alone, both from one run: water poured into a tank as a lattice comes to rest.
-     bench.sph -n 24,24,40 -end 1 [-sph_solver jacobi ...] [-pack] [-quiet] [-length 1.0] [-cpu]
+     bench.sph -n 24,24,40 -end 1 [-sph_solver iisph_jacobi ...] [-pack] [-quiet] [-length 1.0] [-cpu]
     n particles along x, y, z; walls on five sides (-open_sides: periodic in x and y); depth H = n_z dx = 0.4 m. Prints compression,
    pressure against rho g z, force on the floor, speed and offset of the wetted surface, then times by phase. A tank longer than the
    water (-length [m]) makes a dam break; then energies and the particle deepest in a wall are what to look at. */

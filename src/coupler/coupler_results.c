@@ -133,7 +133,7 @@ PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r)
 
 static PetscErrorCode SummaryFluid(Coupler c, CouplerResults *r, Json json)
 {
-  static const char *const solvers[]    = {"pcg", "jacobi"};
+  static const char *const solvers[]    = {"iisph", "iisph_jacobi"};
   static const char *const precisions[] = {"single", "double"};
   SPHParams               *params;
   PetscInt                 n;

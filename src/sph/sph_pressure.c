@@ -133,7 +133,7 @@ PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op)
 - ctx      - its context
 
   Options Database Keys:
-+ -sph_solver (pcg|jacobi)   - solver
++ -sph_solver (iisph|iisph_jacobi) - projected conjugate gradients, or relaxed Jacobi
 . -sph_tolerance <1e-5>      - pcg: mean |projected residual| / rho0 over particles with pressure; jacobi: mean compression
 - -sph_max_iterations <200>  - operator applications; reaching them is told by SPHStats.converged
 
