@@ -200,10 +200,16 @@ static PetscErrorCode RemoveDoubles(Cloud *cloud, PetscReal dx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* contacts for a sweep of the packing; what the sweep before has pushed into a body is put outside again */
 static PetscErrorCode PackContacts(void *ctx, SPH sph)
 {
+  PetscInt n_moved;
+
   PetscFunctionBegin;
-  (void)sph;
+  PetscCall(CouplerUpdateContacts((Coupler)ctx));
+  PetscCall(CouplerPushOut((Coupler)ctx, &n_moved));
+  if (!n_moved) PetscFunctionReturn(PETSC_SUCCESS);
+  ByCall(SPHUpdateNeighbors(sph));
   PetscCall(CouplerUpdateContacts((Coupler)ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -88,6 +88,7 @@ PETSC_INTERN PetscErrorCode CouplerAddRotation(CouplerSurface *s, const PetscRea
 PETSC_INTERN void           CouplerMoment(PetscInt n, const PetscReal x[], const PetscReal f[], PetscReal moment[3]);
 /* coupler_stop.c */
 PETSC_INTERN PetscErrorCode CouplerStop(Coupler coupler, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerPushOut(Coupler coupler, PetscInt *n_moved);
 /* coupler_probes.c */
 PETSC_INTERN PetscErrorCode CouplerAddProbes(Coupler coupler, const Names *names);
 PETSC_INTERN PetscErrorCode CouplerProbeHeaders(Coupler coupler, PetscInt *n, char headers[][2 * BY_NAME_MAX]);

@@ -191,3 +191,33 @@ PetscErrorCode CouplerStop(Coupler c, PetscReal dt)
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* move particles that start inside a body, or nearer than the stop, out to it; n_moved tells how many there were */
+PetscErrorCode CouplerPushOut(Coupler c, PetscInt *n_moved)
+{
+  const PetscReal still[3] = {0, 0, 0};
+  SPHParams      *params;
+
+  PetscFunctionBegin;
+  *n_moved = 0;
+  PetscCall(SPHGetParams(c->sph, &params));
+  for (PetscInt k = 0; k < c->n_surfaces; k++) {
+    Near near;
+
+    if (!c->surface[k].proxy || !c->contacts[k].n_touched) continue;
+    PetscCall(FindNear(c, k, 0.0, &near));
+    PetscCall(FindInside(&near));
+    for (PetscInt t = 0; t < near.n; t++) {
+      const PetscReal gap = (near.winding[t] > 0.5 ? -1.0 : 1.0) * near.distance[t], stop = SPH_STOP_GAP * params->spacing;
+      PetscReal       normal[3], shift[3];
+
+      if (near.triangle[t] < 0 || gap >= stop) continue;
+      Outward(&near, t, gap < 0.0 ? -1.0 : 1.0, normal);
+      for (int i = 0; i < 3; i++) shift[i] = (stop - gap) * normal[i];
+      PetscCall(SPHStop(c->sph, c->contacts[k].particle[t], still, shift));
+      (*n_moved)++;
+    }
+    PetscCall(PetscFree5(near.at, near.distance, near.weights, near.winding, near.triangle));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

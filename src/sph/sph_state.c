@@ -90,6 +90,14 @@ static PetscReal MeanCompression(SPH sph)
   return sum / n;
 }
 
+static PetscReal LargestCompression(SPH sph)
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt i = 0; i < sph->n; i++) largest = PetscMax(largest, sph->rho[i] / sph->params.density - 1.0);
+  return largest;
+}
+
 /* x += the displacement of "pressure" sph->p with dt = 1, at most a tenth of the spacing */
 static void Displace(SPH sph)
 {
@@ -122,7 +130,7 @@ static void Displace(SPH sph)
 
   Input Parameters:
 + sph        - the fluid, set up
-. tol        - mean compression to reach
+. tol        - mean compression to reach; the largest is to come below 20 times it
 . max_sweeps - at most so many sweeps
 . contacts   - called after each neighbour update; it must call SPHSetContacts() (NULL: no surfaces)
 - ctx        - its context
@@ -144,7 +152,7 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
       sph->rho[i]  = sph->rho_pairs[i] + sph->params.density * (1.0 - sph->open[i]);
       sph->rate[i] = sph->wall_rate[i] = 0.0;
     }
-    if (sweep == max_sweeps || MeanCompression(sph) < tol) break;
+    if (sweep == max_sweeps || (MeanCompression(sph) < tol && LargestCompression(sph) < 20.0 * tol)) break;
     sph->relax_time       = 0.0;
     sph->params.tolerance = PetscMax(tolerance, 0.05 * tol);
     ByCall(SPHPackSolve_Internal(sph));
