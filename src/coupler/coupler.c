@@ -197,7 +197,7 @@ PetscErrorCode CouplerUpdateContacts(Coupler c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Velocity of the surface over the coming step as the fluid is to see it. `explicit`: that of now. `mass`: the mean over the step under
+/* Velocity of the surface over the coming step as the fluid is to see it. `explicit`, or no water near: that of now. `mass`: the mean over the step under
    the last forces (a trial run of the solid), less the response to those forces, which the pressure solve puts back (method 5.3). */
 static PetscErrorCode PredictWall(Coupler c, CouplerSurface *s, PetscReal dt)
 {
@@ -210,13 +210,14 @@ static PetscErrorCode PredictWall(Coupler c, CouplerSurface *s, PetscReal dt)
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(PetscArraycpy(s->start, u, 3 * s->n_nodes));
   PetscCall(VecRestoreArrayRead(U, &u));
-  if (!c->compliant) {
+  if (!s->answers) {
     PetscCall(PetscArraycpy(s->mean_velocity, v, 3 * s->n_nodes));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(CouplerResponseSetUp(c, s, dt));
   PetscCall(TLEDSave(s->tled));
   ByCall(TLEDAdvance(s->tled, dt, &s->substeps));
+  s->n_substeps_run += s->substeps;
   PetscCall(VecGetArrayRead(U, &u));
   for (PetscInt i = 0; i < 3 * s->n_nodes; i++) s->mean_velocity[i] = (u[i] - s->start[i]) / dt;
   PetscCall(VecRestoreArrayRead(U, &u));
@@ -365,6 +366,7 @@ static PetscErrorCode AdvanceSolid(Coupler c, CouplerSurface *s, PetscReal dt, P
 
   PetscFunctionBegin;
   ByCall(AdvanceKeepingMoment(c, s, dt));
+  s->n_substeps_run += s->substeps;
   PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
   PetscCall(VecGetArrayRead(U, &u));
   *work = 0.0;
@@ -385,8 +387,8 @@ static PetscErrorCode SolveFluid(Coupler c, PetscReal dt)
     CouplerSurface *s = &c->surface[k];
 
     if (!s->proxy) continue;
-    if (c->compliant) PetscCall(RemoveResponse(s, s->wall_velocity));
-    PetscCall(ProxySetVelocity(s->proxy, c->compliant ? s->wall_velocity : s->mean_velocity));
+    if (s->answers) PetscCall(RemoveResponse(s, s->wall_velocity));
+    PetscCall(ProxySetVelocity(s->proxy, s->answers ? s->wall_velocity : s->mean_velocity));
   }
   PetscCall(CouplerTimer(c, PHASE_TRANSFER));
   ByCall(SPHSolvePressure(c->sph, dt, c->compliant ? CouplerResponseApply : NULL, c));
@@ -410,7 +412,7 @@ static PetscErrorCode FluidWork(Coupler c, PetscInt k, PetscReal dt)
   CouplerSurface *s = &c->surface[k];
 
   PetscFunctionBegin;
-  if (!c->compliant) {
+  if (!s->answers) {
     s->work_fluid += dt * c->contacts[k].power;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -425,12 +427,16 @@ static PetscErrorCode CoupledStep(Coupler c, PetscReal dt)
   const PetscInt passes = c->compliant ? c->params.passes : 1;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < c->n_bodies; k++) {
-    if (c->surface[k].proxy) ByCall(PredictWall(c, &c->surface[k], dt));
-  }
-  PetscCall(CouplerTimer(c, PHASE_SOLID));
   PetscCall(CouplerUpdateContacts(c));
   PetscCall(CouplerTimer(c, PHASE_PROXIES));
+  for (PetscInt k = 0; k < c->n_bodies; k++) {
+    CouplerSurface *s = &c->surface[k];
+
+    /* a body that no water touches needs no trial run */
+    s->answers = (PetscBool)(c->compliant && c->contacts[k].n_touched > 0);
+    if (s->proxy) ByCall(PredictWall(c, s, dt));
+  }
+  PetscCall(CouplerTimer(c, PHASE_SOLID));
   ByCall(SPHPredict(c->sph, dt));
   PetscCall(CouplerTimer(c, PHASE_PRESSURE));
   for (PetscInt pass = 0; pass < passes; pass++) {
@@ -493,7 +499,10 @@ PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
     PetscCall(SPHGetStats(c->sph, &stats));
     c->iterations_sum += stats.iterations;
   } else {
-    for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(TLEDAdvance(c->surface[k].tled, *dt, &c->surface[k].substeps));
+    for (PetscInt k = 0; k < c->n_bodies; k++) {
+      ByCall(TLEDAdvance(c->surface[k].tled, *dt, &c->surface[k].substeps));
+      c->surface[k].n_substeps_run += c->surface[k].substeps;
+    }
     PetscCall(CouplerTimer(c, PHASE_SOLID));
   }
   for (PetscInt k = 0; k < c->n_surfaces; k++) {

@@ -26,6 +26,7 @@ typedef struct {
   Proxy           proxy; /* NULL for a body that no fluid can reach                                       */
   PetscInt        n_nodes;
   PetscReal      *x;             /* n x 3 positions of an obstacle; NULL for a body                        */
+  PetscBool       answers;       /* this step: scheme `mass`, and water touches it                         */
   PetscBool       placed;        /* an obstacle's proxies are placed once                                   */
   PetscInt       *triangles;     /* of an obstacle                                                         */
   PetscInt        n_triangles;
@@ -40,7 +41,8 @@ typedef struct {
   PetscReal       work_fluid, work_solid; /* [J] since the start                                           */
   PetscReal       total[3];      /* [N] of the last step                                                   */
   PetscInt        substeps;      /* of the last step                                                       */
-  PetscReal       n_substeps_sum, n_proxies_sum;
+  PetscReal       n_substeps_sum, n_proxies_sum; /* over the steps since the start                         */
+  PetscReal       n_substeps_run;                /* trial runs and passes included, by this process        */
   CouplerResponse response;
 } CouplerSurface;
 

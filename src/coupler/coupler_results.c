@@ -171,10 +171,8 @@ static PetscErrorCode SummaryBodies(Coupler c, CouplerResults *r, Json json)
     }
     PetscCall(JsonReal(json, "proxies_mean", s->n_proxies_sum / PetscMax(1, c->step)));
     if (s->tled) {
-      const PetscReal runs = s->n_substeps_sum * (c->compliant ? 1.0 + c->params.passes : 1.0);
-
       PetscCall(JsonReal(json, "substeps", s->n_substeps_sum / PetscMax(1, c->step)));
-      if (c->n_bodies == 1) PetscCall(JsonReal(json, "seconds_per_element_step", c->phase[PHASE_SOLID] / PetscMax(1.0, runs * n_tets * r->steps / PetscMax(1, c->step))));
+      if (c->n_bodies == 1) PetscCall(JsonReal(json, "seconds_per_element_step", c->phase[PHASE_SOLID] / PetscMax(1.0, s->n_substeps_run * n_tets)));
     }
     PetscCall(JsonEnd(json));
   }
