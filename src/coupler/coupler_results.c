@@ -155,7 +155,7 @@ static PetscErrorCode SummaryFluid(Coupler c, CouplerResults *r, Json json)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SummaryBodies(Coupler c, CouplerResults *r, Json json)
+static PetscErrorCode SummaryBodies(Coupler c, Json json)
 {
   PetscFunctionBegin;
   PetscCall(JsonBegin(json, "bodies"));
@@ -205,7 +205,7 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
   for (int k = 0; k < N_PHASES; k++) PetscCall(JsonReal(json, phases[k], c->phase[k]));
   PetscCall(JsonEnd(json));
   if (c->sph) PetscCall(SummaryFluid(c, r, json));
-  if (c->n_surfaces) PetscCall(SummaryBodies(c, r, json));
+  if (c->n_surfaces) PetscCall(SummaryBodies(c, json));
   if (c->sph && c->n_surfaces) {
     for (PetscInt k = 0; k < c->n_surfaces; k++) {
       work_fluid += c->surface[k].work_fluid;
