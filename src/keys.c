@@ -20,6 +20,7 @@ typedef union {
   PetscBool boolean;
   int       choice;
   Names     names;
+  Reals     reals;
   char      text[PETSC_MAX_PATH_LEN];
 } KeyValue;
 
@@ -34,6 +35,7 @@ static size_t ValueSize(KeyType type)
   case KEY_BOOL: return sizeof(PetscBool);
   case KEY_VEC3: return 3 * sizeof(PetscReal);
   case KEY_NAMES: return sizeof(Names);
+  case KEY_REALS: return sizeof(Reals);
   case KEY_CHOICE: return sizeof(int);
   case KEY_STRING:
   case KEY_FILE: return PETSC_MAX_PATH_LEN;
@@ -94,6 +96,9 @@ static int Append(char text[], size_t n, const char format[], ...)
 
 static PetscBool HasUnit(const Key *key) { return (PetscBool)(key->unit && key->unit[0] && strcmp(key->unit, "1")); }
 
+/* a list of numbers */
+static PetscBool IsList(const Key *key) { return (PetscBool)(key->type == KEY_VEC3 || key->type == KEY_REALS); }
+
 static PetscBool HasRange(const Key *key) { return (PetscBool)(key->lo < key->hi); }
 
 static void AppendRange(const Key *key, char text[], size_t n)
@@ -116,6 +121,7 @@ PetscErrorCode KeyDescribe(const Key *key, char text[], size_t n)
   case KEY_INT: Append(text, n, "an integer"); break;
   case KEY_BOOL: Append(text, n, "true or false"); break;
   case KEY_VEC3: Append(text, n, "three finite numbers [x, y, z]"); break;
+  case KEY_REALS: Append(text, n, "a list of finite numbers"); break;
   case KEY_STRING: Append(text, n, "text"); break;
   case KEY_FILE: Append(text, n, "an existing file"); break;
   case KEY_NAMES: Append(text, n, key->choices ? "a list out of" : "a list of names"); break;
@@ -124,10 +130,10 @@ PetscErrorCode KeyDescribe(const Key *key, char text[], size_t n)
   if (key->choices) {
     for (PetscInt i = 0; key->choices[i]; i++) Append(text, n, "%s %s", i ? "," : "", key->choices[i]);
   }
-  if (key->type == KEY_REAL || key->type == KEY_INT || key->type == KEY_VEC3) {
-    if (key->type == KEY_VEC3 && HasRange(key) && (key->lo > -UNBOUNDED || key->hi < UNBOUNDED)) Append(text, n, ", each");
+  if (key->type == KEY_REAL || key->type == KEY_INT || IsList(key)) {
+    if (IsList(key) && HasRange(key) && (key->lo > -UNBOUNDED || key->hi < UNBOUNDED)) Append(text, n, ", each");
     AppendRange(key, text, n);
-    if (HasUnit(key)) Append(text, n, "%s [%s]", key->type == KEY_VEC3 ? " in" : "", key->unit);
+    if (HasUnit(key)) Append(text, n, "%s [%s]", IsList(key) ? " in" : "", key->unit);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -241,6 +247,21 @@ static PetscBool ParseVec3(const Key *key, const char text[], PetscReal value[3]
   return PETSC_TRUE;
 }
 
+static PetscBool ParseReals(const Key *key, const char text[], Reals *value, char why[], size_t n_why)
+{
+  const char *cursor = text;
+  char        item[128];
+
+  value->n = 0;
+  if (text[strspn(text, " \t")] == 0) return PETSC_TRUE;
+  while (NextItem(&cursor, item, sizeof item)) {
+    if (value->n == BY_REALS_MAX) return Refuse(key, "has more than 16 numbers", why, n_why);
+    if (!ParseReal(key, item, &value->value[value->n], why, n_why)) return PETSC_FALSE;
+    value->n++;
+  }
+  return PETSC_TRUE;
+}
+
 static PetscBool ParseNames(const Key *key, const char text[], Names *value, char why[], size_t n_why)
 {
   const char *cursor = text;
@@ -285,7 +306,7 @@ static PetscBool Parse(const Key *key, const char given[], KeyValue *value, char
   if (n >= sizeof text) return Refuse(key, "is too long", why, n_why);
 
   /* lists may wear brackets */
-  if ((key->type == KEY_VEC3 || key->type == KEY_NAMES) && n >= 2 && start[0] == '[' && start[n - 1] == ']') {
+  if ((IsList(key) || key->type == KEY_NAMES) && n >= 2 && start[0] == '[' && start[n - 1] == ']') {
     start++;
     n -= 2;
   }
@@ -296,6 +317,7 @@ static PetscBool Parse(const Key *key, const char given[], KeyValue *value, char
   case KEY_INT: return ParseInt(key, text, &value->integer, why, n_why);
   case KEY_BOOL: return ParseBool(key, text, &value->boolean, why, n_why);
   case KEY_VEC3: return ParseVec3(key, text, value->real, why, n_why);
+  case KEY_REALS: return ParseReals(key, text, &value->reals, why, n_why);
   case KEY_NAMES: return ParseNames(key, text, &value->names, why, n_why);
   case KEY_CHOICE:
     value->choice = (int)FindChoice(key->choices, text);
@@ -348,6 +370,7 @@ static void FormatValue(const Key *key, const void *at, char text[], size_t n)
 {
   const PetscReal *real  = (const PetscReal *)at;
   const Names     *names = (const Names *)at;
+  const Reals     *reals = (const Reals *)at;
 
   text[0] = 0;
   switch (key->type) {
@@ -355,6 +378,9 @@ static void FormatValue(const Key *key, const void *at, char text[], size_t n)
   case KEY_INT: Append(text, n, "%" PetscInt_FMT, *(const PetscInt *)at); break;
   case KEY_BOOL: Append(text, n, "%s", *(const PetscBool *)at ? "true" : "false"); break;
   case KEY_VEC3: Append(text, n, "%g, %g, %g", real[0], real[1], real[2]); break;
+  case KEY_REALS:
+    for (PetscInt i = 0; i < reals->n; i++) Append(text, n, "%s%g", i ? ", " : "", reals->value[i]);
+    break;
   case KEY_CHOICE: Append(text, n, "%s", key->choices[*(const int *)at]); break;
   case KEY_NAMES:
     for (PetscInt i = 0; i < names->n; i++) Append(text, n, "%s%s", i ? ", " : "", names->name[i]);

@@ -7,12 +7,14 @@
 
 #define BY_NAME_MAX  64   /* length of a name in a scene */
 #define BY_NAMES_MAX 32   /* how many names one list may hold */
+#define BY_REALS_MAX 16   /* how many numbers                  */
 
 typedef enum {
   KEY_REAL,   /* PetscReal                                                        */
   KEY_INT,    /* PetscInt                                                         */
   KEY_BOOL,   /* PetscBool                                                        */
   KEY_VEC3,   /* PetscReal[3]                                                     */
+  KEY_REALS,  /* Reals, a list of numbers                                         */
   KEY_STRING, /* char[PETSC_MAX_PATH_LEN], a free string or an output path        */
   KEY_FILE,   /* char[PETSC_MAX_PATH_LEN], an existing file; relative to the scene file, or to the
                  working directory when it comes from the command line                         */
@@ -25,6 +27,11 @@ typedef struct {
   char     name[BY_NAMES_MAX][BY_NAME_MAX];
 } Names;
 
+typedef struct {
+  PetscInt  n;
+  PetscReal value[BY_REALS_MAX];
+} Reals;
+
 /* range flags: which ends of [lo, hi] are open, and that a key must be given. A bound of 1e300 and beyond is none; lo == hi means
    that any finite number will do. */
 enum { KEY_LO_OPEN = 1, KEY_HI_OPEN = 2, KEY_REQUIRED = 4 };
@@ -35,7 +42,7 @@ typedef struct {
   size_t             offset;  /* of the value in the module's parameter struct                            */
   const char        *unit;    /* "m", "Pa s", "1" for a pure number, "" where units make no sense          */
   const char        *def;     /* default as a user would write it; NULL or "" = empty/zero/none            */
-  double             lo, hi;  /* permitted range of REAL, INT and each component of VEC3                   */
+  double             lo, hi;  /* permitted range of REAL, INT and each number of VEC3 and REALS            */
   int                flags;
   const char *const *choices; /* NULL-terminated words of a KEY_CHOICE (or of each name in KEY_NAMES)      */
   const char        *help;    /* one line, lower-case, no full stop                                        */

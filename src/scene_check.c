@@ -108,6 +108,11 @@ static PetscErrorCode EnsureNode(Scene scene, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool TakesList(const Key *key)
+{
+  return (PetscBool)(key->type == KEY_VEC3 || key->type == KEY_REALS || key->type == KEY_NAMES);
+}
+
 static PetscErrorCode OverrideKey(Scene scene, PetscInt b, const Key *key, const char value[])
 {
   Node *node, *item;
@@ -129,7 +134,7 @@ static PetscErrorCode OverrideKey(Scene scene, PetscInt b, const Key *key, const
   node->quoted             = PETSC_FALSE;
   node->overridden         = PETSC_TRUE;
   if (!value) value = key->type == KEY_BOOL ? "true" : "";
-  if (key->type != KEY_VEC3 && key->type != KEY_NAMES) {
+  if (!TakesList(key)) {
     node->kind = NODE_SCALAR;
     PetscCall(PetscStrallocpy(value, &node->text));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -281,7 +286,7 @@ static PetscErrorCode ResolveFile(Scene scene, Node *node)
 
 static PetscErrorCode CheckValue(Scene scene, const Block *block, const Key *key, Node *node)
 {
-  const PetscBool takes_list = (PetscBool)(key->type == KEY_VEC3 || key->type == KEY_NAMES);
+  const PetscBool takes_list = TakesList(key);
   char            text[PETSC_MAX_PATH_LEN], why[PETSC_MAX_PATH_LEN + 1024] = "", allowed[512], dotted[512], value[512];
   PetscBool       nested = PETSC_FALSE;
 

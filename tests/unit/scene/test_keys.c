@@ -29,6 +29,7 @@ static void only_finite_numbers_within_open_and_closed_ends_pass(void **state)
   static const Key  half   = {"half", KEY_REAL, 0, "1", NULL, 0, 0.5, KEY_HI_OPEN, NULL, ""};
   static const Key  open   = {"open", KEY_REAL, 0, "Pa s", "1e-3", 0, INFINITY, KEY_LO_OPEN, NULL, ""};
   static const Key  vector = {"vector", KEY_VEC3, 0, "m", NULL, -1, 1, 0, NULL, ""};
+  static const Key  list   = {"list", KEY_REALS, 0, "s", NULL, 0, 10, KEY_LO_OPEN, NULL, ""};
   static const Key  count  = {"count", KEY_INT, 0, "1", NULL, 1, 10, 0, NULL, ""};
   const char *const bad[]  = {"nan", "NaN", "inf", "-inf", "1e400", "", " ", "x", "1 m", "1,2", "0.1.2", "--1"};
 
@@ -47,6 +48,11 @@ static void only_finite_numbers_within_open_and_closed_ends_pass(void **state)
   assert_string_not_equal(Why(&vector, "1,0"), "");
   assert_string_not_equal(Why(&vector, "1,0,nan"), "");
   assert_string_not_equal(Why(&vector, "1,0,0,0"), "");
+  assert_string_equal(Why(&list, ""), "");
+  assert_string_equal(Why(&list, "[0.1, 10]"), "");
+  assert_string_equal(Why(&list, "1, 0"), "is out of range\nexpected a list of finite numbers, each > 0 and <= 10 in [s]");
+  assert_string_not_equal(Why(&list, "1, x"), "");
+  assert_non_null(strstr(Why(&list, "1,2,3,4,5,6,7,8,9,10,1,2,3,4,5,6,7"), "more than 16"));
   assert_string_equal(Why(&count, "10"), "");
   assert_string_equal(Why(&count, "1e1"), "");
   assert_string_not_equal(Why(&count, "1.5"), "");

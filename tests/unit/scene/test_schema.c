@@ -23,7 +23,7 @@ static void every_row_has_help_unit_and_a_name_as_users_write_it(void **state)
   (void)state;
   for (const SceneSection *section = CouplerSchema; section->name; section++) {
     for (const Key *key = section->keys; key->name; key++) {
-      const PetscBool number = (PetscBool)(key->type == KEY_REAL || key->type == KEY_INT || key->type == KEY_VEC3);
+      const PetscBool number = (PetscBool)(key->type == KEY_REAL || key->type == KEY_INT || key->type == KEY_VEC3 || key->type == KEY_REALS);
 
       if (strspn(key->name, "abcdefghijklmnopqrstuvwxyz_0123456789") != strlen(key->name))
         fail_msg("%s: %s", section->name, key->name);
