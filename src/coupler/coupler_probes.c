@@ -15,7 +15,7 @@ static PetscErrorCode LocatePoint(CouplerSurface *s, const char key[], const Pet
 
   PetscFunctionBegin;
   PetscCall(TLEDGetSize(s->tled, &n_nodes, &n_tets));
-  PetscCall(TLEDGetMesh(s->tled, &tets, &X));
+  PetscCall(TLEDGetMesh(s->tled, NULL, &tets, &X));
   for (PetscInt e = 0; e < n_tets; e++) {
     const PetscInt *n = &tets[4 * e];
     double          D[9], inverse[9], r[3], w[3];
@@ -154,7 +154,7 @@ static PetscErrorCode BodyPoint(CouplerSurface *s, const CouplerProbe *probe, Pe
 
   PetscFunctionBegin;
   PetscCall(TLEDGetPositions(s->tled, &x, &v));
-  PetscCall(TLEDGetMesh(s->tled, &tets, &X));
+  PetscCall(TLEDGetMesh(s->tled, NULL, &tets, &X));
   for (int k = 0; k < 3; k++) {
     value[k] = 0.0;
     for (int a = 0; a < 4; a++) {

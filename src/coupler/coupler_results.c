@@ -41,7 +41,7 @@ PetscErrorCode CouplerResultsCreate(Coupler c, const char directory[], const cha
       const PetscReal *X;
 
       PetscCall(TLEDGetSize(s->tled, &n_nodes, &n_tets));
-      PetscCall(TLEDGetMesh(s->tled, &tets, &X));
+      PetscCall(TLEDGetMesh(s->tled, NULL, &tets, &X));
       ByCall(SeriesCreate(directory, s->name, SERIES_TETRAHEDRA, scene, append, c->time, &r->body[k]));
       ByCall(SeriesSetCells(r->body[k], n_tets, tets));
     } else {

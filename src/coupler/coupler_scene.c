@@ -114,7 +114,7 @@ static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams
   PetscCall(TLEDSetGravity(tled, c->gravity));
   ByCall(TLEDSetUp(tled));
   PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));
-  PetscCall(TLEDGetMesh(tled, &tets, &X));
+  PetscCall(TLEDGetMesh(tled, NULL, &tets, &X));
   if (c->sph) {
     ByCall(DampMesh(tled, name));
     PetscCall(SPHGetParams(c->sph, &fluid));

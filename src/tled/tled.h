@@ -43,9 +43,10 @@ BY_EXTERN PetscErrorCode TLEDView(TLED tled, PetscViewer viewer);
 BY_EXTERN PetscErrorCode TLEDDestroy(TLED *tled);
 
 BY_EXTERN PetscErrorCode TLEDGetSize(TLED tled, PetscInt *n_nodes, PetscInt *n_tets);
-/* tetrahedra n_tets x 4 and reference coordinates n_nodes x 3, borrowed */
-BY_EXTERN PetscErrorCode TLEDGetMesh(TLED tled, const PetscInt *tets[], const PetscReal *X[]);
-/* boundary triangles, n x 3 node numbers, outward by the right-hand rule; wetted_only picks the groups of `wetted` */
+/* tetrahedra n_tets x n_corners and reference coordinates n_nodes x 3, borrowed; n_corners is 4, or 10 for a mesh of second order: 4
+   vertices, then the nodes of the edges 01, 12, 02, 03, 13, 23 (VTK's order) */
+BY_EXTERN PetscErrorCode TLEDGetMesh(TLED tled, PetscInt *n_corners, const PetscInt *tets[], const PetscReal *X[]);
+/* boundary triangles, n x 3 node numbers, outward by the right-hand rule, four for each quadratic face; wetted_only picks the groups of `wetted` */
 BY_EXTERN PetscErrorCode TLEDGetSurface(TLED tled, PetscBool wetted_only, PetscInt *n_triangles, const PetscInt *triangles[]);
 /* nodes of a physical group; unknown group: n = 0 */
 BY_EXTERN PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n, const PetscInt *nodes[]);

@@ -26,8 +26,9 @@ typedef struct {
 /* The mesh as read, then renumbered block by block. */
 typedef struct {
   PetscInt   n_nodes, n_tets, n_triangles, n_groups;
+  PetscInt   n_corners; /* nodes of a tetrahedron: 4, or 10 in VTK's order  */
   PetscReal *X;         /* n_nodes x 3 [m]                                  */
-  PetscInt  *tets;      /* n_tets x 4                                       */
+  PetscInt  *tets;      /* n_tets x n_corners                               */
   PetscInt  *tag;       /* number of each tetrahedron in the gmsh file      */
   PetscInt  *triangles; /* boundary, n_triangles x 3, outward               */
   TLEDGroup *groups;

@@ -69,8 +69,9 @@ static PetscErrorCode GetCells(const char key[], DM dm, const TLEDParams *p, TLE
   PetscFunctionBegin;
   PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
-  mesh->n_tets  = c_end - c_start;
-  mesh->n_nodes = v_end - v_start;
+  mesh->n_tets    = c_end - c_start;
+  mesh->n_nodes   = v_end - v_start;
+  mesh->n_corners = 4;
   PetscCall(PetscMalloc3(3 * mesh->n_nodes, &mesh->X, 4 * mesh->n_tets, &mesh->tets, mesh->n_tets, &mesh->tag));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(VecGetLocalSize(coordinates, &n));

@@ -11,10 +11,12 @@ PetscErrorCode TLEDGetSize(TLED tled, PetscInt *n_nodes, PetscInt *n_tets)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ TLEDGetMesh - tetrahedra, n_tets x 4 node numbers, and reference coordinates [m], n_nodes x 3; borrowed, either may be NULL @*/
-PetscErrorCode TLEDGetMesh(TLED tled, const PetscInt *tets[], const PetscReal *X[])
+/*@ TLEDGetMesh - tetrahedra, n_tets x n_corners (4 or 10) node numbers in VTK's order, and reference coordinates [m], n_nodes x 3;
+   borrowed, each may be NULL @*/
+PetscErrorCode TLEDGetMesh(TLED tled, PetscInt *n_corners, const PetscInt *tets[], const PetscReal *X[])
 {
   PetscFunctionBegin;
+  if (n_corners) *n_corners = tled->mesh.n_corners;
   if (tets) *tets = tled->mesh.tets;
   if (X) *X = tled->mesh.X;
   PetscFunctionReturn(PETSC_SUCCESS);

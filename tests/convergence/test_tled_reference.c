@@ -162,7 +162,7 @@ static void NearIncompressibility_DoesNotLockAnp(void **state)
       AddName(&p->wetted, "load");
       assert_petsc(TLEDSetUp(tled));
       assert_petsc(TLEDGetSurface(tled, PETSC_TRUE, &n, &tri));
-      assert_petsc(TLEDGetMesh(tled, NULL, &X));
+      assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
       assert_petsc(TLEDGetVectors(tled, NULL, NULL, &force));
       assert_petsc(VecGetArray(force, &f));
       for (PetscInt t = 0; t < n; t++) { /* the face x = 48 mm: areas in the y-z plane */

@@ -42,7 +42,7 @@ static inline void SetVec(TLED tled, Vec vec, void (*value)(const PetscReal X[3]
   PetscInt         n;
 
   assert_petsc(TLEDGetSize(tled, &n, NULL));
-  assert_petsc(TLEDGetMesh(tled, NULL, &X));
+  assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
   assert_petsc(VecGetArrayWrite(vec, &v));
   for (PetscInt a = 0; a < n; a++) value(&X[3 * a], &v[3 * a]);
   assert_petsc(VecRestoreArrayWrite(vec, &v));
@@ -55,7 +55,7 @@ static inline PetscInt NodeAt(TLED tled, double x, double y, double z)
   PetscInt         n;
 
   assert_petsc(TLEDGetSize(tled, &n, NULL));
-  assert_petsc(TLEDGetMesh(tled, NULL, &X));
+  assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
   for (PetscInt a = 0; a < n; a++)
     if (fabs(X[3 * a] - x) + fabs(X[3 * a + 1] - y) + fabs(X[3 * a + 2] - z) < 1e-9) return a;
   fail_msg("no node at %g %g %g", x, y, z);

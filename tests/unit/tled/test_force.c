@@ -46,7 +46,7 @@ static void PatchTest_GivesTheUniformStress(void **state)
       assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
       assert_petsc(VecDuplicate(u, &force));
       assert_petsc(TLEDGetSize(tled, &n, NULL));
-      assert_petsc(TLEDGetMesh(tled, NULL, &X));
+      assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
       assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &n_tri, &tri));
       for (int i = 0; i < 5; i++) {
         const PatchReference *r        = &patch_reference[law][i];

@@ -63,7 +63,7 @@ static void Cube_IsReadAsWritten(void **state)
     assert_petsc(TLEDGetSize(tled, &n_nodes, &n_tets));
     assert_int_equal(n_nodes, 8);
     assert_int_equal(n_tets, 6);
-    assert_petsc(TLEDGetMesh(tled, &tets, &X));
+    assert_petsc(TLEDGetMesh(tled, NULL, &tets, &X));
     assert_petsc(TLEDGetMass(tled, &mass));
     for (PetscInt a = 0; a < 8; a++) {
       total += mass[a];

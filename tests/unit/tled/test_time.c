@@ -35,7 +35,7 @@ static void FreeFall_IsExact(void **state)
   assert_petsc(TLEDAdvance(tled, 0.05, &substeps));
   assert_petsc(TLEDAdvance(tled, 0.03, &substeps));
   assert_petsc(TLEDGetSize(tled, &n, NULL));
-  assert_petsc(TLEDGetMesh(tled, NULL, &X));
+  assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
   assert_petsc(TLEDGetPositions(tled, &x, &v));
   for (PetscInt a = 0; a < n; a++) {
     for (int k = 0; k < 3; k++) {
@@ -241,7 +241,7 @@ static void Constraints_Hold(void **state)
   assert_petsc(TLEDGetGroup(tled, "clamp", &n_clamp, &clamp));
   assert_petsc(TLEDGetGroup(tled, "tip", &n_tip, &tip));
   assert_petsc(TLEDGetPositions(tled, &x, &v));
-  assert_petsc(TLEDGetMesh(tled, NULL, &X));
+  assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
   assert_petsc(TLEDIsConstrained(tled, &held));
   assert_petsc(TLEDIsFree(tled, &is_free));
   assert_false(is_free);
