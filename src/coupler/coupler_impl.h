@@ -75,6 +75,8 @@ struct _p_Coupler {
   char           breakdown[1024];
 };
 
+/* coupler_scene.c */
+PETSC_INTERN PetscErrorCode CouplerSetBodiesFromOptions(Coupler coupler);
 /* coupler_fill.c */
 PETSC_INTERN PetscErrorCode CouplerBuildFluid(Coupler coupler, const DomainParams *domain);
 /* scheme_mass.c */

@@ -161,6 +161,62 @@ static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainPa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* the probes that a body alone has: its displacement and velocity */
+static PetscErrorCode BodyProbes(Coupler c, const Names *all, Names *probes)
+{
+  PetscFunctionBegin;
+  probes->n = 0;
+  for (PetscInt k = 0; k < all->n; k++) {
+    ProbeParams params;
+    char        prefix[2 * BY_NAME_MAX];
+    PetscBool   same = PETSC_FALSE;
+
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", all->name[k]));
+    PetscCall(KeysSetDefaults(ProbeKeys, &params));
+    PetscCall(KeysSetFromOptions(ProbeKeys, prefix, &params));
+    for (PetscInt b = 0; b < c->n_bodies && !same; b++) PetscCall(PetscStrcmp(c->surface[b].name, params.body, &same));
+    if (!same || (params.quantity != PROBE_DISPLACEMENT && params.quantity != PROBE_VELOCITY)) continue;
+    PetscCall(PetscStrncpy(probes->name[probes->n++], all->name[k], BY_NAME_MAX));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  CouplerSetBodiesFromOptions - build the bodies of the scene in the options database, dry, and the probes on them
+
+  Collective
+
+  Input Parameter:
+. coupler - a new coupler
+
+  Errors:
+  BY_ERR_INPUT when a body cannot be built, or there is none; each is reported
+
+.seealso: CouplerSetFromOptions(), CouplerVerify()
+@*/
+PetscErrorCode CouplerSetBodiesFromOptions(Coupler c)
+{
+  TopParams    top;
+  DomainParams domain;
+  Names        probes;
+  PetscBool    has_domain;
+
+  PetscFunctionBegin;
+  PetscCall(KeysSetDefaults(TopKeys, &top));
+  PetscCall(KeysSetFromOptions(TopKeys, "", &top));
+  PetscCall(PetscArraycpy(c->gravity, top.gravity, 3));
+  ByCall(ReadDomain(&domain, &has_domain));
+  if (!top.bodies.n) PetscFunctionReturn(InputError("bodies", "the scene has no body\nname one: `bodies: [name]`, and give it a section"));
+  for (PetscInt k = 0; k < top.bodies.n; k++) {
+    const PetscErrorCode ierr = BuildBody(c, top.bodies.name[k], &domain);
+    if (ierr != BY_ERR_INPUT) PetscCall(ierr); /* go on, so that every bad body is reported */
+  }
+  if (InputErrorCount()) PetscFunctionReturn(BY_ERR_INPUT);
+  PetscCall(BodyProbes(c, &top.probes, &probes));
+  ByCall(CouplerAddProbes(c, &probes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   CouplerSetFromOptions - build fluid, bodies, obstacles and probes of the scene in the options database
 
