@@ -3,6 +3,7 @@ byssus_test(unit/scene/test_keys base)
 byssus_test(unit/scene/test_scene base)
 byssus_test(unit/scene/test_scene_errors base)
 byssus_test(unit/scene/test_array base)
+byssus_test(unit/scene/test_course base)
 
 # the command line: src/main.c with the simulation of tests/cli/sample.c
 add_executable(test.cli.sample cli/sample.c ${CMAKE_SOURCE_DIR}/src/main.c $<TARGET_OBJECTS:base>)
