@@ -10,7 +10,7 @@
    on a block of water that hits a soft light ball (tests/conservation/free_body.yaml): largest compression of the water 17, 11, 2.7, 5 %
    at beta = 1/12, 1/6, 1/4, 1/2, against 1.8 % when the step is repeated until solid and response agree (coupler.passes); the gain of
    energy by the splitting is 4, 3, -1.5, 1 % against -1.5 %.
-   It replaces the nodal or impedance mass m_R of method 5.3 by the body's own tangent K, so that every interface
+   It replaces the nodal or impedance mass m_R of method 5.3 by the body's own stiffness K (TLEDResponse()), so that every interface
    shape has its own added-mass balance. With g_ib the boundary gradient of particle i that belongs to proxy b, N_ba the proxy's barycentric
    weights, the nodal force is f_a = sum_b N_ba sum_i m p~_i g_ib, and the wall's answer adds
 
@@ -70,7 +70,7 @@ PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
   r->dt_step = dt;
   if (r->dt > 0.0 && PetscAbsReal(dt / r->dt - 1.0) < 0.05 && r->age++ < c->params.response_every) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
-  PetscCall(TLEDTangent(s->tled, U, &r->tangent));
+  PetscCall(TLEDResponse(s->tled, U, &r->tangent));
   if (!r->ksp) PetscCall(CreateSolver(s));
   PetscCall(MatCopy(r->tangent, r->matrix, SAME_NONZERO_PATTERN));
   PetscCall(MatScale(r->matrix, c->params.response_beta * dt * dt));

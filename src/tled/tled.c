@@ -268,10 +268,7 @@ PetscErrorCode TLEDDestroy(TLED *tled)
   PetscCall(VecDestroy(&t->f));
   PetscCall(PetscFree5(t->x, t->force, t->probe, t->mode, t->trial));
   PetscCall(PetscFree3(t->krylov, t->saved, t->sums));
-  PetscCall(PetscFree(t->tangent_row));
-  PetscCall(PetscFree(t->tangent_column));
-  PetscCall(PetscFree(t->tangent_slot));
-  PetscCall(PetscFree(t->tangent_value));
+  PetscCall(TLEDAssemblyDestroy_Private(&t->assembly));
   PetscCall(PetscHeaderDestroy(&t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

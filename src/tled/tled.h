@@ -81,10 +81,12 @@ BY_EXTERN PetscErrorCode TLEDSetState(TLED tled, PetscInt n, const PetscReal sta
 BY_EXTERN PetscErrorCode TLEDGetTime(TLED tled, PetscReal *time);
 BY_EXTERN PetscErrorCode TLEDSetTime(TLED tled, PetscReal time);
 
-/* internal force f(u) [N] at displacement u, and tangent K(u) = df/du as an n x n AIJ matrix of block size 3 (created on first
-   call when *K is NULL, rows of constrained nodes are kept: the caller treats them); exact for t4, a response operator for anp */
+/* internal force f(u) [N] at displacement u, and its tangent K(u) = df/du as an n x n AIJ matrix of block size 3 (created on first
+   call when *K is NULL, rows of constrained nodes are kept: the caller treats them); TLEDResponse() is the same but for anp, where it is a
+   cheaper response operator with few numbers a row */
 BY_EXTERN PetscErrorCode TLEDInternalForce(TLED tled, Vec u, Vec f);
 BY_EXTERN PetscErrorCode TLEDTangent(TLED tled, Vec u, Mat *K);
+BY_EXTERN PetscErrorCode TLEDResponse(TLED tled, Vec u, Mat *K);
 
 typedef struct {
   PetscReal kinetic, strain, gravity_potential; /* [J]                                      */

@@ -113,9 +113,7 @@ struct _p_TLED {
   PetscReal   *saved;          /* u, v, force, mode: 4 x (n_nodes x 3)                        */
   PetscBool    saved_valid, saved_force_valid;
   PetscInt     substeps, saved_substeps; /* taken since the start                             */
-  PetscInt    *tangent_slot;   /* n_tets x 16: place of each 3 x 3 block in the tangent       */
-  PetscInt    *tangent_row, *tangent_column; /* block CSR of the tangent                      */
-  PetscReal   *tangent_value;
+  struct TLEDAssembly *assembly; /* of the public tangents, tled_assembly.h; NULL before the first */
   char         breakdown[TLED_MESSAGE];
 };
 
@@ -142,6 +140,8 @@ int  TLEDElementsBroken_OpenMP(const TLEDLoops *loops);
 /* tled_energy.c */
 PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *energy, PetscReal *volume, PetscReal stretch[2]);
 PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscReal time);
+/* tled_assembly.c */
+PetscErrorCode TLEDAssemblyDestroy_Private(struct TLEDAssembly **assembly);
 /* tled_critical.c */
 PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt n_steps, PetscReal *dt);
 /* f(u), raw arrays; returns BY_ERR_BREAKDOWN (with no message) when an element is broken */

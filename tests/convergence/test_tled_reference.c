@@ -207,7 +207,7 @@ static void AnpTangent_AnswersLikeTheElement(void **state)
   assert_petsc(TLEDSetUp(tled));
   assert_petsc(TLEDGetSize(tled, &n, NULL));
   assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
-  assert_petsc(TLEDTangent(tled, u, &K));
+  assert_petsc(TLEDResponse(tled, u, &K));
   assert_petsc(TLEDGetMass(tled, &mass));
   assert_petsc(TLEDIsConstrained(tled, &held));
   assert_petsc(VecDuplicate(u, &load));
@@ -230,7 +230,7 @@ static void AnpTangent_AnswersLikeTheElement(void **state)
   assert_petsc(KSPSetOperators(ksp, K, K));
   assert_petsc(KSPSolve(ksp, load, u));
   assert_petsc(TLEDGetPositions(tled, &x, NULL));
-  printf("anp tangent: tip answers %.3f of what the element does\n", (x[3 * tip + 2] - 0.05) / moved);
+  printf("anp response: tip answers %.3f of what the element does\n", (x[3 * tip + 2] - 0.05) / moved);
   assert_close(x[3 * tip + 2] - 0.05, moved, 0.2, moved);
   assert_petsc(KSPDestroy(&ksp));
   assert_petsc(MatDestroy(&K));
