@@ -30,11 +30,11 @@ static PetscErrorCode NewBody(const char mesh[], int element, int law, TLED *tle
   PetscCall(TLEDCreate(PETSC_COMM_SELF, "body", tled));
   PetscCall(TLEDGetParams(*tled, &p));
   PetscCall(PetscStrncpy(p->mesh, mesh, sizeof p->mesh));
-  p->young    = 3e6;
-  p->density  = 1000.0;
-  p->poisson  = element == TLED_ELEMENT_ANP ? 0.45 : 0.3;
+  p->elastic.young    = 3e6;
+  p->elastic.density  = 1000.0;
+  p->elastic.poisson  = element == TLED_ELEMENT_ANP ? 0.45 : 0.3;
   p->element  = element;
-  p->material = law;
+  p->elastic.material = law;
   if (held) PetscCall(PetscStrncpy(p->fixed.name[p->fixed.n++], held, BY_NAME_MAX));
   PetscCall(TLEDSetGravity(*tled, g));
   ByCall(TLEDSetUp(*tled));

@@ -105,14 +105,15 @@ static PetscErrorCode AddedMassRatio(CouplerSurface *s, PetscReal rest_density, 
   const PetscInt  *triangles;
   const PetscReal *x, *v;
   TLEDStats        stats;
-  TLEDParams      *params;
-  PetscReal        area = 0.0;
+  const PetscReal *mass;
+  PetscReal        area = 0.0, total = 0.0;
 
   PetscFunctionBegin;
   PetscCall(TLEDGetSurface(s->tled, PETSC_FALSE, &n, &triangles));
   PetscCall(TLEDGetPositions(s->tled, &x, &v));
   PetscCall(TLEDGetStats(s->tled, &stats));
-  PetscCall(TLEDGetParams(s->tled, &params));
+  PetscCall(TLEDGetMass(s->tled, &mass));
+  for (PetscInt a = 0; a < s->n_nodes; a++) total += mass[a];
   for (PetscInt t = 0; t < n; t++) {
     double a[3], b[3], ab[3];
 
@@ -121,7 +122,7 @@ static PetscErrorCode AddedMassRatio(CouplerSurface *s, PetscReal rest_density, 
     Cross3(a, b, ab);
     area += 0.5 * Norm3(ab);
   }
-  *ratio = rest_density * PetscSqrtReal(0.5 * area) / (params->density * 2.0 * stats.volume / area);
+  *ratio = rest_density * PetscSqrtReal(0.5 * area) / (total * 2.0 * stats.volume / (stats.volume_reference * area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

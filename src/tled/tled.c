@@ -1,6 +1,5 @@
 /* tled.c - the life of a body: Create, SetFromOptions, SetUp, View, Destroy, and what it lends. */
 #include "tled/tled_impl.h"
-#include "tled/tled_element.h"
 #include <string.h>
 
 PetscClassId  TLED_CLASSID;
@@ -62,11 +61,25 @@ PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys) @*/
+/*@
+  TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys), and the materials that the key `materials`
+  names, -<name>_<material>_<key> (TLEDMaterialKeys)
+@*/
 PetscErrorCode TLEDSetFromOptions(TLED tled)
 {
+  const Names       *names  = &tled->params.materials;
+  const char        *prefix = ((PetscObject)tled)->prefix;
+  TLEDMaterialParams material;
+  char               full[2 * BY_NAME_MAX + 2];
+
   PetscFunctionBegin;
-  ByCall(KeysSetFromOptions(TLEDKeys, ((PetscObject)tled)->prefix, &tled->params));
+  ByCall(KeysSetFromOptions(TLEDKeys, prefix, &tled->params));
+  for (PetscInt i = 0; i < names->n; i++) {
+    PetscCall(PetscSNPrintf(full, sizeof full, "%s%s_", prefix, names->name[i]));
+    PetscCall(KeysSetDefaults(TLEDMaterialKeys, &material));
+    ByCall(KeysSetFromOptions(TLEDMaterialKeys, full, &material));
+    PetscCall(TLEDAddMaterial(tled, names->name[i], &material));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,26 +152,26 @@ static PetscErrorCode LumpMass(TLED tled)
   for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
     if (b->element[l] < 0) continue;
     tled->volume += b->V0[l];
-    for (int a = 0; a < 4; a++) tled->mass[tled->mesh.tets[4 * b->element[l] + a]] += 0.25 * tled->params.density * b->V0[l];
+    const PetscReal density = tled->materials[b->material[l / TLED_LANES]].density;
+    for (int a = 0; a < 4; a++) tled->mass[tled->mesh.tets[4 * b->element[l] + a]] += 0.25 * density * b->V0[l];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SetUpLoops(TLED tled)
 {
-  const TLEDParams *p = &tled->params;
+  const TLEDBlocks *b = &tled->blocks;
   TLEDLoops        *w = &tled->loops;
 
   PetscFunctionBegin;
-  w->blocks = &tled->blocks;
-  w->law    = p->material == TLED_MATERIAL_NEO_HOOKEAN ? TLED_LAW_NEO_HOOKEAN : TLED_LAW_ST_VENANT_KIRCHHOFF;
-  w->anp    = p->element == TLED_ELEMENT_ANP || (p->element == TLED_ELEMENT_AUTO && p->poisson > 0.4);
-  w->mu     = p->young / (2.0 * (1.0 + p->poisson));
-  w->lambda = p->young * p->poisson / ((1.0 + p->poisson) * (1.0 - 2.0 * p->poisson));
+  w->blocks = b;
   PetscCall(PetscMalloc2(3 * tled->blocks.n_slots, &w->partial, tled->blocks.n_blocks, &w->status));
   if (w->anp) {
     PetscCall(PetscMalloc3(tled->mesh.n_nodes, &w->nodal, tled->mesh.n_nodes, &w->pressure, tled->mesh.n_nodes, &w->weight));
-    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 0.25 * p->density / tled->mass[a];
+    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 0.0;
+    for (int l = 0; l < TLED_LANES * b->n_packs; l++)
+      for (int a = 0; a < 4 && b->element[l] >= 0; a++) w->weight[tled->mesh.tets[4 * b->element[l] + a]] += b->V0[l];
+    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 1.0 / w->weight[a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -207,6 +220,8 @@ PetscErrorCode TLEDSetUp(TLED tled)
   PetscCheck(!tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() was called before");
   PetscCall(PetscSNPrintf(key, sizeof key, "%s.mesh", ((PetscObject)tled)->name));
   ByCall(TLEDMeshRead_Private(key, &tled->params, &tled->mesh));
+  ByCall(TLEDMaterialsSetUp_Private(tled));
+  PetscCall(TLEDElementPick_Private(tled));
   PetscCall(TLEDBlocksCreate_Private(&tled->mesh, &tled->blocks));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(MarkNodes(tled, "fixed", &tled->params.fixed, TLED_FIXED));
@@ -238,10 +253,16 @@ PetscErrorCode TLEDView(TLED tled, PetscViewer viewer)
                                      "%" PetscInt_FMT " nodes, %" PetscInt_FMT " tetrahedra in %d blocks, %" PetscInt_FMT
                                      " boundary triangles (%" PetscInt_FMT " wetted), volume %g m^3, element %s\n",
                                      tled->mesh.n_nodes, tled->mesh.n_tets, tled->blocks.n_blocks, tled->mesh.n_triangles,
-                                     tled->n_wetted, (double)tled->volume, tled->loops.anp ? "anp" : "t4"));
+                                     tled->n_wetted, (double)tled->volume, tled->loops.ops->name));
     if (tled->state.critical > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "critical step %g s\n", (double)tled->state.critical));
   }
   PetscCall(KeysView(TLEDKeys, &tled->params, viewer));
+  for (PetscInt k = 1; k < tled->n_materials; k++) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "material %s\n", tled->material_name[k]));
+    PetscCall(PetscViewerASCIIPushTab(viewer));
+    PetscCall(KeysView(TLEDMaterialKeys, &tled->materials[k], viewer));
+    PetscCall(PetscViewerASCIIPopTab(viewer));
+  }
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,11 +10,19 @@ typedef struct _p_TLED *TLED;
 typedef enum { TLED_MATERIAL_NEO_HOOKEAN, TLED_MATERIAL_ST_VENANT_KIRCHHOFF } TLEDMaterial;
 typedef enum { TLED_ELEMENT_AUTO, TLED_ELEMENT_T4, TLED_ELEMENT_ANP } TLEDElement;
 
+/* An elastic material; TLEDMaterialKeys[] (tled_keys.c) declares each member. The body's own one is TLEDParams.elastic. */
+typedef struct {
+  Names     volumes;                       /* physical volumes made of it; not for the body's own, which has the rest    */
+  int       material;                      /* TLEDMaterial                                                               */
+  PetscReal density;                       /* rho [kg/m^3]                                                               */
+  PetscReal young, poisson;                /* E [Pa], nu [1] at small strain                                             */
+} TLEDMaterialParams;
+
 /* Parameters of a body's section `<body>:`; TLEDKeys[] (tled_keys.c) declares each. */
 typedef struct {
   char      mesh[PETSC_MAX_PATH_LEN]; /* gmsh .msh with named physical groups; required                     */
-  PetscReal density;                  /* rho [kg/m^3]                                                        */
-  PetscReal young, poisson;           /* E [Pa], nu [1]                                                      */
+  TLEDMaterialParams elastic;         /* of all elements that no other material has                          */
+  Names     materials;                /* names of further materials, see TLEDAddMaterial()                   */
   PetscReal damping;                  /* alpha [1/s] of D = alpha M                                          */
   PetscReal stiffness_damping;        /* beta [s] of a stiffness-proportional viscous stress; 0 = none       */
   PetscReal safety;                   /* of the critical step                                                */
@@ -25,11 +33,10 @@ typedef struct {
   Names     fixed;                    /* physical groups held                                                */
   Names     prescribed;               /* physical groups moved                                               */
   Names     wetted;                   /* surface groups in contact with fluid; empty = whole boundary        */
-  int       material;                 /* TLEDMaterial                                                        */
   int       element;                  /* TLEDElement; auto = anp above nu 0.4, else t4                        */
 } TLEDParams;
 
-BY_EXTERN const Key TLEDKeys[];
+BY_EXTERN const Key TLEDKeys[], TLEDMaterialKeys[];
 
 /* life: Create -> GetParams/SetFromOptions (options prefix "<body>_") -> SetGravity -> SetUp -> Advance -> Destroy.
    SetUp reads the mesh through DMPlex; user errors (missing mesh, no such group, not tetrahedra, inverted element) are
@@ -37,6 +44,9 @@ BY_EXTERN const Key TLEDKeys[];
 BY_EXTERN PetscErrorCode TLEDCreate(MPI_Comm comm, const char name[], TLED *tled);
 BY_EXTERN PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params);
 BY_EXTERN PetscErrorCode TLEDSetFromOptions(TLED tled);
+/* one more material, for the physical volumes that it names; before TLEDSetUp(). SetFromOptions does it for each name in `materials`,
+   with the options -<body>_<name>_<key>. */
+BY_EXTERN PetscErrorCode TLEDAddMaterial(TLED tled, const char name[], const TLEDMaterialParams *params);
 BY_EXTERN PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3]);
 BY_EXTERN PetscErrorCode TLEDSetUp(TLED tled);
 BY_EXTERN PetscErrorCode TLEDView(TLED tled, PetscViewer viewer);

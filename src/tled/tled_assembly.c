@@ -2,8 +2,6 @@
 #include "tled/tled_assembly.h"
 #include "tled/tled_average.h"
 
-#define BULK 2.0 /* lambda' over mu at most in the response of the average nodal pressure element, that of Poisson's ratio 1/3 */
-
 /* elements around each node of the mesh: around[offset[a]..offset[a + 1]-1] */
 static PetscErrorCode ElementsAround(TLED tled, PetscInt **offset, PetscInt **around, PetscInt *n_max)
 {
@@ -121,20 +119,6 @@ PetscErrorCode TLEDAssemblyDestroy_Private(TLEDAssembly **assembly)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* gradients of the four shape functions and displacement gradient of one element */
-static void ElementGradients(const TLED tled, int l, const PetscReal u[], double G4[12], double H[9])
-{
-  const TLEDBlocks *b = &tled->blocks;
-  const int         pack = l / TLED_LANES, lane = l % TLED_LANES;
-  const PetscInt   *corner = &tled->mesh.tets[4 * b->element[l]];
-  double            d[9];
-
-  for (int k = 0; k < 9; k++) G4[3 + k] = b->G[(9 * pack + k) * TLED_LANES + lane];
-  for (int i = 0; i < 3; i++) G4[i] = -(G4[3 + i] + G4[6 + i] + G4[9 + i]);
-  for (int a = 0; a < 3; a++) Sub3(&u[3 * corner[a + 1]], &u[3 * corner[0]], &d[3 * a]);
-  TLEDDisplacementGradient(d, &G4[3], H);
-}
-
 /* does an element have a row of this rank? */
 static PetscBool Touches(const TLEDAssembly *s, PetscInt n_corners, const PetscInt corner[])
 {
@@ -175,23 +159,24 @@ static void AddAverage(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
   const TLEDLoops *w      = &tled->loops;
   const PetscInt   e      = w->blocks->element[l];
   const PetscInt  *corner = &tled->mesh.tets[4 * e], *slot = &s->slot[16 * e];
-  const double     V0 = w->blocks->V0[l];
-  double           G4[12], H[9], F[9], cof[9], A[81], K[144], dpbar[9], dP[9], dC[9], jbar = 0.0, p = 0.0;
+  double           F[9], cof[9], A[81], K[144], dpbar[9], dP[9], dC[9], jbar = 0.0, p = 0.0;
+  TLEDPoint        at_u;
 
-  ElementGradients(tled, l, u, G4, H);
+  TLEDPointAt_Private(w, tled->mesh.tets, l, 0, u, &at_u);
+  const double V0 = at_u.V0, *G4 = at_u.G, *H = at_u.H;
   TLEDDeformationGradient(H, F);
   TLEDCofactor(F, cof);
   for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]], p += w->pressure[corner[a]];
   for (int k = 0; k < 9; k++) {
     double dF[9] = {0.0};
     dF[k]    = 1.0;
-    dpbar[k] = TLEDAverageDifferential(w->law, H, 1.0 + jbar, w->mu, w->lambda, dF, 0.0, dP);
+    dpbar[k] = TLEDAverageDifferential(at_u.law, at_u.fibre, H, 1.0 + jbar, dF, 0.0, dP);
     TLEDCofactorDifferential(F, dF, dC);
     for (int i = 0; i < 9; i++) A[9 * i + k] = dP[i] + p * dC[i];
   }
   ContractTangent(A, G4, V0, K);
   AddElement(s, 4, slot, K);
-  const double zero[9] = {0.0}, d2 = TLEDAverageDifferential(w->law, H, 1.0 + jbar, w->mu, w->lambda, zero, 1.0, dP);
+  const double zero[9] = {0.0}, d2 = TLEDAverageDifferential(at_u.law, at_u.fibre, H, 1.0 + jbar, zero, 1.0, dP);
   for (int a = 0; a < 4; a++) {
     for (int b = 0; b < 4; b++) {
       const PetscInt at = slot[4 * a + b];
@@ -208,19 +193,17 @@ static void AddAverage(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
 /* one plain element, or the response of an average nodal pressure element */
 static void AddPlain(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
 {
-  const TLEDLoops *w            = &tled->loops;
-  const PetscInt   e            = w->blocks->element[l];
-  const PetscInt  *corner       = &tled->mesh.tets[4 * e];
-  const double     lambda_prime = w->anp && w->lambda > BULK * w->mu ? BULK * w->mu : w->lambda;
-  double           G4[12], H[9], Hbar[9], K[144], jbar = 0.0;
+  const TLEDBlocks *b  = &tled->blocks;
+  const int         nc = b->n_corners;
+  double            K[900] = {0.0};
+  TLEDPoint         p;
 
-  ElementGradients(tled, l, u, G4, H);
-  if (w->anp) {
-    for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]];
-    (void)TLEDAverageGradient(H, 1.0 / (1.0 + TLEDJacobianMinusOne(H)), 1.0 + jbar, Hbar);
+  for (int point = 0; point < b->n_points; point++) {
+    TLEDPointAt_Private(&tled->loops, tled->mesh.tets, l, point, u, &p);
+    TLEDElementStiffness(p.law, p.fibre, p.seen, p.G, nc, p.V0, K);
+    if (tled->loops.anp) TLEDElementSoften(p.law, p.seen, p.G, nc, p.V0, K);
   }
-  TLEDStiffness(w->law, w->anp ? Hbar : H, &G4[3], w->blocks->V0[l], w->mu, w->lambda, lambda_prime, K);
-  AddElement(s, 4, &s->slot[16 * e], K);
+  AddElement(s, nc, &s->slot[nc * nc * b->element[l]], K);
 }
 
 /*

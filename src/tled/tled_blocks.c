@@ -1,7 +1,6 @@
 /* tled_blocks.c - tetrahedra cut into cache-sized blocks by METIS, nodes and elements renumbered along them, packed for vector
  * loops. */
 #include "tled/tled_impl.h"
-#include "tled/tled_element.h"
 #include <metis.h>
 
 /* part[e]: the METIS part of each tetrahedron, from the graph of elements that share a face. Recursive bisection gives neighbours
@@ -30,25 +29,27 @@ static PetscErrorCode CutElements(const TLEDMesh *mesh, PetscInt part[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* new numbers: elements by part, nodes in the order in which these meet them; nodes of no element are dropped */
+/* new numbers: elements by part and material, nodes in the order in which these meet them; nodes of no element are dropped */
 static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
 {
-  PetscInt  *order, *key, *number, n = 0, m, *tets, *tag;
+  PetscInt  *order, *key, *number, n = 0, m, *tets, *tag, *material, *place;
   PetscReal *X;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(mesh->n_tets, &order, mesh->n_tets, &key, mesh->n_nodes, &number));
-  for (PetscInt e = 0; e < mesh->n_tets; e++) order[e] = e, key[e] = part[e];
+  for (PetscInt e = 0; e < mesh->n_tets; e++) order[e] = e, key[e] = part[e] * TLED_MATERIALS + mesh->material[e];
   PetscCall(PetscSortIntWithArray(mesh->n_tets, key, order));
-  for (PetscInt e = 0, first = 0; e < mesh->n_tets; e++) { /* within a part, the file's order */
+  for (PetscInt e = 0, first = 0; e < mesh->n_tets; e++) { /* within a part and a material, the file's order */
     if (e + 1 < mesh->n_tets && key[e + 1] == key[first]) continue;
     PetscCall(PetscSortInt(e + 1 - first, &order[first]));
     first = e + 1;
   }
   for (PetscInt a = 0; a < mesh->n_nodes; a++) number[a] = -1;
   PetscCall(PetscMalloc3(3 * mesh->n_nodes, &X, 4 * mesh->n_tets, &tets, mesh->n_tets, &tag));
+  PetscCall(PetscMalloc1(mesh->n_tets, &material));
+  PetscCall(PetscMalloc1(mesh->n_tets, &place));
   for (PetscInt e = 0; e < mesh->n_tets; e++) {
-    tag[e] = mesh->tag[order[e]];
+    tag[e] = mesh->tag[order[e]], material[e] = mesh->material[order[e]], place[order[e]] = e;
     for (PetscInt a = 0; a < 4; a++) {
       const PetscInt old = mesh->tets[4 * order[e] + a];
       if (number[old] < 0) {
@@ -66,18 +67,22 @@ static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
       if (number[group->nodes[i]] >= 0) group->nodes[m++] = number[group->nodes[i]];
     group->n_nodes = m;
     PetscCall(PetscSortInt(m, group->nodes));
+    for (PetscInt i = 0; i < group->n_tets; i++) group->tets[i] = place[group->tets[i]];
+    PetscCall(PetscSortInt(group->n_tets, group->tets));
   }
   PetscCall(PetscFree3(mesh->X, mesh->tets, mesh->tag));
-  mesh->X = X, mesh->tets = tets, mesh->tag = tag, mesh->n_nodes = n;
+  PetscCall(PetscFree(mesh->material));
+  PetscCall(PetscFree(place));
+  mesh->X = X, mesh->tets = tets, mesh->tag = tag, mesh->material = material, mesh->n_nodes = n;
   PetscCall(PetscFree3(order, key, number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Walk the elements in order and close a block when its part ends or it is full. With `blocks` NULL's arrays (n_* only) it counts;
+/* Walk the elements in order and close a block when its part ends or it is full, a pack when its material ends. With `blocks` NULL's arrays (n_* only) it counts;
    the second walk fills. local_of[a] and block_of[a] are work of n_nodes. */
 static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of[], int local_of[], TLEDBlocks *b, PetscBool fill)
 {
-  int n_in_block = 0, n_nodes = 0, lane;
+  int n_in_block = 0, n_nodes = 0, lane = 0;
 
   b->n_blocks = b->n_packs = b->n_slots = 0;
   for (PetscInt a = 0; a < mesh->n_nodes; a++) block_of[a] = -1;
@@ -85,10 +90,13 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
     if (e == 0 || part[e] != part[e - 1] || n_in_block == TLED_BLOCK_TETS || n_nodes + 4 > TLED_BLOCK_NODES) {
       if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
       b->n_blocks++;
-      n_in_block = n_nodes = 0;
+      n_in_block = n_nodes = lane = 0;
+    } else if (mesh->material[e] != mesh->material[e - 1]) lane = 0;
+    if (lane == 0) {
+      if (fill) b->material[b->n_packs] = (int)mesh->material[e];
+      b->n_packs++;
     }
-    if (n_in_block % TLED_LANES == 0) b->n_packs++;
-    lane = n_in_block++ % TLED_LANES;
+    n_in_block++;
     for (PetscInt k = 0; k < 4; k++) {
       const PetscInt a = mesh->tets[4 * e + k];
       if (block_of[a] != b->n_blocks) {
@@ -99,6 +107,7 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
       if (fill) b->local[(4 * (b->n_packs - 1) + k) * TLED_LANES + lane] = local_of[a];
     }
     if (fill) b->element[(b->n_packs - 1) * TLED_LANES + lane] = (int)e;
+    lane = (lane + 1) % TLED_LANES;
   }
   if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
 }
@@ -152,11 +161,14 @@ PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *b)
   PetscCall(Renumber(mesh, part));
   PetscCall(PetscSortInt(mesh->n_tets, part)); /* elements now lie in the order of their parts */
   PetscCall(PetscMalloc2(mesh->n_nodes, &block_of, mesh->n_nodes, &local_of));
-  b->n_nodes = (int)mesh->n_nodes;
+  b->n_nodes   = (int)mesh->n_nodes;
+  b->n_corners = 4;
+  b->n_points  = 1;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_FALSE);
   PetscCall(PetscMalloc3(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node));
   PetscCall(PetscCalloc4(4 * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element, 9 * b->n_packs * TLED_LANES,
                          &b->G, b->n_packs * TLED_LANES, &b->V0));
+  PetscCall(PetscMalloc1(b->n_packs, &b->material));
   for (int l = 0; l < b->n_packs * TLED_LANES; l++) b->element[l] = -1;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_TRUE);
   FillGeometry(mesh, b);
@@ -170,6 +182,8 @@ PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *b)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree3(b->pack_offset, b->node_offset, b->node));
+  PetscCall(PetscFree(b->material));
+  PetscCall(PetscFree(b->fibre));
   PetscCall(PetscFree4(b->local, b->element, b->G, b->V0));
   PetscCall(PetscFree(b->slot_offset));
   PetscCall(PetscFree(b->slot));

@@ -6,20 +6,20 @@
 #define LANES   8   /* TLED_LANES: elements side by side in the structures of arrays */
 #define THREADS 128 /* per block: enough to hide memory latency with the registers that a tetrahedron takes */
 
-static __global__ void ElementForces(int law, double mu, double lambda, int n_lanes, const int *corner, const double *G,
+static __global__ void ElementForces(const TLEDLaw *laws, const int *material, int n_lanes, const int *corner, const double *G,
                                      const double *V0, const double *u, double *corner_force)
 {
   const int l = blockIdx.x*blockDim.x + threadIdx.x, pack = l / LANES, lane = l % LANES;
   int       n[4];
-  double    g[9], d[9], H[9], P[9], f[9];
+  double    g[9], d[9], H[9], P[9], f[9], a[3] = {0.0, 0.0, 0.0};
 
   if (l >= n_lanes) return;
-  for (int a = 0; a < 4; a++) n[a] = corner[(4*pack + a)*LANES + lane];
+  for (int c = 0; c < 4; c++) n[c] = corner[(4*pack + c)*LANES + lane];
   for (int k = 0; k < 9; k++) g[k] = G[(9*pack + k)*LANES + lane];
-  for (int a = 0; a < 3; a++) Sub3(&u[3*n[a + 1]], &u[3*n[0]], &d[3*a]);
+  for (int c = 0; c < 3; c++) Sub3(&u[3*n[c + 1]], &u[3*n[0]], &d[3*c]);
   TLEDDisplacementGradient(d, g, H);
   const double jm1 = TLEDJacobianMinusOne(H);
-  TLEDStress(law, H, TLEDLogJacobian(jm1), 1.0 / (1.0 + jm1), mu, lambda, P);
+  TLEDStress(&laws[material[pack]], a, H, TLEDLogJacobian(jm1), 1.0 / (1.0 + jm1), P);
   TLEDNodalForces(P, g, V0[l], f);
   for (int i = 0; i < 3; i++) corner_force[12*l + i] = -(f[i] + f[3 + i] + f[6 + i]);
   for (int k = 0; k < 9; k++) corner_force[12*l + 3 + k] = f[k];
@@ -36,10 +36,10 @@ static __global__ void GatherForces(int n_nodes, const int *offset, const int *l
   for (int i = 0; i < 3; i++) f[3*a + i] = sum[i];
 }
 
-extern "C" int TLEDElementForces_CUDA(int law, double mu, double lambda, int n_lanes, const int corner[], const double G[],
-                                      const double V0[], const double u[], double corner_force[])
+extern "C" int TLEDElementForces_CUDA(const TLEDLaw laws[], const int material[], int n_lanes, const int corner[],
+                                      const double G[], const double V0[], const double u[], double corner_force[])
 {
-  ElementForces<<<(n_lanes + THREADS - 1) / THREADS, THREADS>>>(law, mu, lambda, n_lanes, corner, G, V0, u, corner_force);
+  ElementForces<<<(n_lanes + THREADS - 1) / THREADS, THREADS>>>(laws, material, n_lanes, corner, G, V0, u, corner_force);
   return (int)cudaGetLastError();
 }
 

@@ -4,8 +4,9 @@
 #include "array.h"
 
 struct _TLEDDevice {
-  int    law, n_lanes, n_nodes;
-  double mu, lambda;   /* [Pa]                                                      */
+  int    n_lanes, n_nodes;
+  Array  laws;         /* TLEDLaw of each material                                  */
+  Array  material;     /* int, n_packs                                              */
   Array  corner;       /* int, n_packs x 4 x TLED_LANES: node of each corner         */
   Array  G, V0;        /* double, as in TLEDBlocks                                   */
   Array  offset, list; /* int: the corners 4 lane + a of each node, ascending        */
@@ -63,15 +64,14 @@ PetscErrorCode TLEDDeviceCreate(TLED tled, TLEDDevice *device)
   TLEDDevice        d;
 
   PetscFunctionBegin;
-  PetscCheck(tled->set_up && !tled->loops.anp, PETSC_COMM_SELF, PETSC_ERR_SUP,
+  PetscCheck(tled->set_up && tled->loops.ops == &TLEDElementT4, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "the device has the forces of the element t4 of a body that is set up");
   PetscCall(PetscNew(&d));
-  d->law     = tled->loops.law;
-  d->mu      = tled->loops.mu;
-  d->lambda  = tled->loops.lambda;
   d->n_lanes = TLED_LANES * b->n_packs;
   d->n_nodes = b->n_nodes;
   PetscCall(FillCorners(b, d));
+  PetscCall(FillArray(&d->laws, sizeof(TLEDLaw), (size_t)tled->loops.n_laws, tled->laws));
+  PetscCall(FillArray(&d->material, sizeof(int), (size_t)b->n_packs, b->material));
   PetscCall(FillArray(&d->G, sizeof(double), 9 * (size_t)d->n_lanes, b->G));
   PetscCall(FillArray(&d->V0, sizeof(double), (size_t)d->n_lanes, b->V0));
   PetscCall(FillArray(&d->corner_force, sizeof(double), 12 * (size_t)d->n_lanes, NULL));
@@ -84,7 +84,8 @@ PetscErrorCode TLEDDeviceCreate(TLED tled, TLEDDevice *device)
 PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[])
 {
 #if defined(BYSSUS_HAVE_CUDA)
-  const int    *corner, *offset, *list;
+  const TLEDLaw *laws;
+  const int    *material, *corner, *offset, *list;
   const double *G, *V0, *from;
   double       *to, *corner_force, *out;
   int           status;
@@ -92,6 +93,8 @@ PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[]
   PetscFunctionBegin;
   PetscCall(ArrayHostOverwrite(&d->u, &to));
   PetscCall(PetscArraycpy(to, u, 3 * d->n_nodes));
+  PetscCall(ArrayDeviceRead(&d->laws, &laws));
+  PetscCall(ArrayDeviceRead(&d->material, &material));
   PetscCall(ArrayDeviceRead(&d->corner, &corner));
   PetscCall(ArrayDeviceRead(&d->offset, &offset));
   PetscCall(ArrayDeviceRead(&d->list, &list));
@@ -100,7 +103,7 @@ PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[]
   PetscCall(ArrayDeviceRead(&d->u, &from));
   PetscCall(ArrayDeviceOverwrite(&d->corner_force, &corner_force));
   PetscCall(ArrayDeviceOverwrite(&d->f, &out));
-  status = TLEDElementForces_CUDA(d->law, d->mu, d->lambda, d->n_lanes, corner, G, V0, from, corner_force);
+  status = TLEDElementForces_CUDA(laws, material, d->n_lanes, corner, G, V0, from, corner_force);
   PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_GPU, "TLEDElementForces_CUDA failed with CUDA status %d", status);
   status = TLEDGatherForces_CUDA(d->n_nodes, offset, list, corner_force, out);
   PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_GPU, "TLEDGatherForces_CUDA failed with CUDA status %d", status);
@@ -120,6 +123,8 @@ PetscErrorCode TLEDDeviceDestroy(TLEDDevice *device)
 
   PetscFunctionBegin;
   if (!d) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ArrayDestroy(&d->laws));
+  PetscCall(ArrayDestroy(&d->material));
   PetscCall(ArrayDestroy(&d->corner));
   PetscCall(ArrayDestroy(&d->offset));
   PetscCall(ArrayDestroy(&d->list));

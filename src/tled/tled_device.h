@@ -2,15 +2,17 @@
 #ifndef BY_TLED_DEVICE_H
 #define BY_TLED_DEVICE_H
 
+#include "tled/tled_material.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* All pointers are on the device; each call returns a CUDA status, 0 = done. Lanes are those of TLEDBlocks, padding included. */
 
-/* Forces of the elements on their corners: corner_force[12 lane + 3 a + i] [N] at displacement u [m], n_nodes x 3. */
-int TLEDElementForces_CUDA(int law, double mu, double lambda, int n_lanes, const int corner[], const double G[], const double V0[],
-                           const double u[], double corner_force[]);
+/* Forces of the elements, of the law material[lane / 8], on their corners: corner_force[12 lane + 3 a + i] [N] at displacement u [m], n_nodes x 3. */
+int TLEDElementForces_CUDA(const TLEDLaw laws[], const int material[], int n_lanes, const int corner[], const double G[],
+                           const double V0[], const double u[], double corner_force[]);
 
 /* f[3 a + i] = sum of the corners list[offset[a]] ... list[offset[a+1] - 1] of node a, in that order: no atomics. Waits for the end. */
 int TLEDGatherForces_CUDA(int n_nodes, const int offset[], const int list[], const double corner_force[], double f[]);

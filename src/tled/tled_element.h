@@ -90,69 +90,36 @@ BY_HD void TLEDAverageStress(const double H[9], double r, double inv_J, double J
   P[6] = r*P[6] + c*C[6]; P[7] = r*P[7] + c*C[7]; P[8] = r*P[8] + c*C[8];
 }
 
-/* Stiffness blocks of the neo-Hookean tetrahedron, K_ab = df_a/du_b [N/m], closed form with the current gradients g = F^-T G:
-     K_ab = V0 [ mu (G_a . G_b) I + (mu - lambda ln J) g_b g_a^T + lambda' g_a g_b^T ]
-   with lambda' = lambda. (A smaller lambda' takes volumetric stiffness out, see TLEDTangent().) K is 12 x 12, row-major, rows 3 a + i. */
-BY_HD void TLEDStiffnessNeoHookean(const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime,
-                                   double K[144])
+/* Stiffness of one integration point of an element with n nodes, added to K (3n x 3n, row-major, rows 3 a + i) [N/m]:
+     K_ai,bk += V0 sum_jl G_a,j A_ijkl G_b,l,  A = dP/dF at the gradient H that the law sees, G the nodes' reference gradients (n x 3) */
+BY_HD void TLEDElementStiffness(const TLEDLaw *law, const double fibre[3], const double H[9], const double G[], int n, double V0,
+                                double K[])
 {
-  const double jm1 = TLEDJacobianMinusOne(H), inv_J = 1.0 / (1.0 + jm1), c = mu - lambda*TLEDLogJacobian(jm1);
-  double       F[9], B[9], G4[12], g[12];
-
-  TLEDDeformationGradient(H, F);
-  TLEDCofactor(F, B);
-  for (int i = 0; i < 3; i++) {
-    G4[i] = -(G[i] + G[3 + i] + G[6 + i]);
-    for (int a = 1; a < 4; a++) G4[3*a + i] = G[3*(a - 1) + i];
-  }
-  for (int a = 0; a < 4; a++)
-    for (int i = 0; i < 3; i++) g[3*a + i] = inv_J*(B[3*i]*G4[3*a] + B[3*i + 1]*G4[3*a + 1] + B[3*i + 2]*G4[3*a + 2]);
-  for (int a = 0; a < 4; a++) {
-    for (int b = 0; b < 4; b++) {
-      const double d = V0*mu*Dot3(&G4[3*a], &G4[3*b]);
-      for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++)
-          K[12*(3*a + i) + 3*b + k] = V0*(c*g[3*b + i]*g[3*a + k] + lambda_prime*g[3*a + i]*g[3*b + k]) + (i == k ? d : 0.0);
+  for (int k = 0; k < 3; k++) {
+    for (int l = 0; l < 3; l++) {
+      double dF[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, dP[9];
+      dF[3*k + l] = V0;
+      TLEDStressDifferential(law, fibre, H, dF, dP);
+      for (int a = 0; a < n; a++) {
+        for (int i = 0; i < 3; i++) {
+          const double t = Dot3(&dP[3*i], &G[3*a]);
+          for (int b = 0; b < n; b++) K[3*n*(3*a + i) + 3*b + k] += t*G[3*b + l];
+        }
       }
     }
   }
 }
 
-/* Stiffness blocks of the St Venant-Kirchhoff tetrahedron with y = F G:
-     K_ab = V0 [ (G_a . S G_b) I + lambda' y_a y_b^T + mu (y_b y_a^T + (G_a . G_b) F F^T) ],  lambda' = lambda as above */
-BY_HD void TLEDStiffnessStVenantKirchhoff(const double H[9], const double G[9], double V0, double mu, double lambda,
-                                          double lambda_prime, double K[144])
+/* Take the excess bulk stiffness of TLEDExcessBulk() out of K: K_ab -= V0 excess y_a y_b^T with y_a = B G_a, B of TLEDBulkDirection() */
+BY_HD void TLEDElementSoften(const TLEDLaw *law, const double H[9], const double G[], int n, double V0, double K[])
 {
-  double F[9], B[9], S[6], G4[12], y[12];
+  const double excess = V0*TLEDExcessBulk(law);
+  double       B[9], y[30];
 
-  TLEDDeformationGradient(H, F);
-  TLEDSecondStressStVenantKirchhoff(H, mu, lambda, S);
-  for (int i = 0; i < 3; i++) {
-    G4[i] = -(G[i] + G[3 + i] + G[6 + i]);
-    for (int a = 1; a < 4; a++) G4[3*a + i] = G[3*(a - 1) + i];
-    for (int k = 0; k < 3; k++) B[3*i + k] = Dot3(&F[3*i], &F[3*k]);
-  }
-  for (int a = 0; a < 4; a++) Mul3(F, &G4[3*a], &y[3*a]);
-  for (int a = 0; a < 4; a++) {
-    for (int b = 0; b < 4; b++) {
-      const double *A = &G4[3*a], *C = &G4[3*b];
-      const double  GG = Dot3(A, C);
-      const double  GSG = A[0]*(S[0]*C[0] + S[3]*C[1] + S[5]*C[2]) + A[1]*(S[3]*C[0] + S[1]*C[1] + S[4]*C[2])
-                         + A[2]*(S[5]*C[0] + S[4]*C[1] + S[2]*C[2]);
-      for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++)
-          K[12*(3*a + i) + 3*b + k] = V0*(lambda_prime*y[3*a + i]*y[3*b + k] + mu*(y[3*b + i]*y[3*a + k] + GG*B[3*i + k]) + (i == k ? GSG : 0.0));
-      }
-    }
-  }
-}
-
-/* stiffness of the law `law` */
-BY_HD void TLEDStiffness(int law, const double H[9], const double G[9], double V0, double mu, double lambda, double lambda_prime,
-                         double K[144])
-{
-  if (law == TLED_LAW_NEO_HOOKEAN) TLEDStiffnessNeoHookean(H, G, V0, mu, lambda, lambda_prime, K);
-  else TLEDStiffnessStVenantKirchhoff(H, G, V0, mu, lambda, lambda_prime, K);
+  TLEDBulkDirection(law, H, B);
+  for (int a = 0; a < n; a++) Mul3(B, &G[3*a], &y[3*a]);
+  for (int r = 0; r < 3*n; r++)
+    for (int c = 0; c < 3*n; c++) K[3*n*r + c] -= excess*y[r]*y[c];
 }
 
 #endif

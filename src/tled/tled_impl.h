@@ -4,6 +4,7 @@
 
 #include "tled/tled.h"
 #include "tled/tled_step.h"
+#include "tled/tled_element.h"
 #include <petsc/private/petscimpl.h>
 
 #define TLED_LANES           8   /* elements that are worked on at once: one AVX-512 register of doubles          */
@@ -11,6 +12,7 @@
 #define TLED_BLOCK_NODES     256 /* nodes of a block at most                                                       */
 #define TLED_CHUNK           128 /* nodes whose contributions to a sum are added first, for any number of threads  */
 #define TLED_THREAD_BLOCKS   12  /* blocks that make one more thread worth its barriers, also on a busy machine       */
+#define TLED_MATERIALS       (BY_NAMES_MAX + 1) /* of a body at most: its own and the further ones                 */
 #define TLED_MESSAGE         512 /* characters of a breakdown message                                              */
 
 /* A named physical group of the mesh file. */
@@ -21,6 +23,8 @@ typedef struct {
   PetscInt *nodes;
   PetscInt  n_triangles; /* boundary triangles of a surface group, numbers of TLEDMesh.triangles */
   PetscInt *triangles;
+  PetscInt  n_tets;      /* elements of a volume group, ascending                      */
+  PetscInt *tets;
 } TLEDGroup;
 
 /* The mesh as read, then renumbered block by block. */
@@ -30,6 +34,7 @@ typedef struct {
   PetscReal *X;         /* n_nodes x 3 [m]                                  */
   PetscInt  *tets;      /* n_tets x n_corners                               */
   PetscInt  *tag;       /* number of each tetrahedron in the gmsh file      */
+  PetscInt  *material;  /* n_tets: number of the law in TLEDLoops.laws      */
   PetscInt  *triangles; /* boundary, n_triangles x 3, outward               */
   TLEDGroup *groups;
 } TLEDMesh;
@@ -45,32 +50,62 @@ typedef struct {
   PetscInt *tag;                            /* number of each tetrahedron, in the file's order; NULL for a binary file */
 } TLEDGmshFile;
 
-/* Elements in blocks, a block's elements in packs of TLED_LANES as structures of arrays. Each block adds up the forces on its own nodes
+/* Elements in blocks, a block's elements in packs of TLED_LANES as structures of arrays; the elements of a pack are of one material. Each block adds up the forces on its own nodes
    in a fixed order; each node then adds its blocks in a fixed order: the same bits for any number of threads, no atomics. */
 typedef struct {
   int     n_blocks, n_packs, n_slots, n_nodes;
+  int     n_corners;   /* nodes of an element: 4 or 10                                           */
+  int     n_points;    /* integration points of an element                                       */
   int    *pack_offset; /* n_blocks + 1                                                           */
   int    *node_offset; /* n_blocks + 1, into `node`; also the block's slots of a partial sum     */
   int    *node;        /* n_slots: node of each slot                                             */
-  int    *local;       /* n_packs x 4 x TLED_LANES: the corners as numbers within the block      */
+  int    *material;    /* n_packs: number of the law                                             */
+  int    *local;       /* n_packs x n_corners x TLED_LANES: the corners as numbers within the block      */
   int    *element;     /* n_packs x TLED_LANES: number of the element, -1 for padding            */
-  double *G;           /* n_packs x 9 x TLED_LANES [1/m], 0 for padding                          */
-  double *V0;          /* n_packs x TLED_LANES [m^3], 0 for padding                              */
+  double *G;           /* n_packs x n_points x 9 x TLED_LANES [1/m], 0 for padding; what it is, the element says */
+  double *V0;          /* n_packs x n_points x TLED_LANES: volume of a point [m^3], 0 for padding */
+  double *fibre;       /* n_packs x 3 x TLED_LANES: unit vector along the fibres, 0 for none     */
   int    *slot_offset; /* n_nodes + 1                                                            */
   int    *slot;        /* n_slots: the slots of each node                                        */
 } TLEDBlocks;
 
+typedef struct _TLEDElementOps TLEDElementOps;
+
 /* What the element loops need; raw pointers only, so that they run inside a parallel region. */
 typedef struct {
-  const TLEDBlocks *blocks;
-  int               law, anp;    /* material; 1 = average nodal pressure                           */
-  double            mu, lambda;  /* [Pa]                                                           */
+  const TLEDBlocks     *blocks;
+  const TLEDElementOps *ops;     /* the element                                                    */
+  const TLEDLaw        *laws;    /* of each material; the first is the body's own                  */
+  int               n_laws;
+  int               anp;         /* 1 = average nodal pressure: ops->averaged                      */
   double           *partial;     /* n_slots x 3: forces of a block on its nodes [N]                */
   double           *nodal;       /* n_nodes: J_a - 1, then q_a [Pa] (anp)                          */
   double           *pressure;    /* n_nodes (anp)                                                  */
   double           *weight;      /* n_nodes: 1/sum_e V0_e [1/m^3] (anp)                            */
   int              *status;      /* n_blocks: 1 where an element has det F <= 0 or NaN             */
 } TLEDLoops;
+
+/* An element: what the loops over the body ask of it. One for each kind, in tled_element.c; the loops of a backend fill `forces`. */
+struct _TLEDElementOps {
+  const char *name;      /* as in the key `element`                                                   */
+  int         n_corners; /* nodes: 4 or 10                                                            */
+  int         averaged;  /* 1: its laws see the averaged gradient, loops->nodal holds the J_a - 1     */
+  /* forces at displacement u into the blocks' partial sums, and the blocks' status; called by all threads of a parallel region */
+  void (*forces)(const TLEDLoops *loops, const double u[]);
+  /* reference gradients dN_a/dX [1/m] (n_corners x 3) and volume [m^3] of one integration point of the element in a lane */
+  void (*point)(const TLEDBlocks *blocks, int lane, int point, double G[], double *V0);
+};
+
+/* One integration point of an element in the deformed body, for loops that are not part of a step. */
+typedef struct {
+  const TLEDLaw *law;
+  double         G[30];   /* dN_a/dX [1/m], n_corners x 3                        */
+  double         V0;      /* [m^3]                                               */
+  double         H[9];    /* displacement gradient                               */
+  double         jm1;     /* det F - 1                                           */
+  double         seen[9]; /* what the law sees: H, or Hbar of the averaged one   */
+  double         fibre[3];
+} TLEDPoint;
 
 /* State that Advance changes; u and v apart (they are Vecs). */
 typedef struct {
@@ -99,6 +134,10 @@ struct _p_TLED {
   PetscBool    is_free;
   TLEDBlocks   blocks;
   TLEDLoops    loops;
+  PetscInt     n_materials;                    /* the body's own and the further ones         */
+  TLEDMaterialParams materials[TLED_MATERIALS]; /* the first is params.elastic, from SetUp on  */
+  char         material_name[TLED_MATERIALS][BY_NAME_MAX];
+  TLEDLaw      laws[TLED_MATERIALS];
   Vec          u, v, f;
   PetscReal   *x;              /* X + u, n_nodes x 3, of TLEDGetPositions()                   */
   PetscReal   *force;          /* f_int of the last substep, n_nodes x 3 [N]                  */
@@ -128,6 +167,12 @@ PetscErrorCode TLEDMeshDestroy_Private(TLEDMesh *mesh);
 PetscErrorCode TLEDMeshFindGroup_Private(const TLEDMesh *mesh, const char name[], const TLEDGroup **group);
 PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[], const char key[], const char name[], PetscInt dim,
                                          const TLEDGroup **group);
+/* tled_materials.c: laws of the materials, and mesh->material */
+PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled);
+/* tled_element.c */
+extern const TLEDElementOps TLEDElementT4, TLEDElementANP;
+PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */
+void           TLEDPointAt_Private(const TLEDLoops *loops, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p);
 /* tled_blocks.c */
 PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *blocks);
 PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);
@@ -135,6 +180,8 @@ PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);
 int  TLEDThreads_OpenMP(const TLEDLoops *loops); /* threads that are worth while */
 void TLEDElementForces_OpenMP(const TLEDLoops *loops, const double u[]);
 void TLEDGatherForces_OpenMP(const TLEDLoops *loops, double f[]);
+void TLEDForcesT4_OpenMP(const TLEDLoops *loops, const double u[]);
+void TLEDForcesANP_OpenMP(const TLEDLoops *loops, const double u[]);
 void TLEDNodalVolumes_OpenMP(const TLEDLoops *loops, const double u[]); /* fills loops->nodal (anp) */
 int  TLEDElementsBroken_OpenMP(const TLEDLoops *loops);
 /* tled_energy.c */

@@ -4,6 +4,13 @@
 static const char *const materials[] = {"neo_hookean", "st_venant_kirchhoff", NULL}; /* in the order of TLEDMaterial */
 static const char *const elements[]  = {"auto", "t4", "anp", NULL};                  /* in the order of TLEDElement  */
 
+/* the keys of a material, for a struct S in which it is the member m (with its dot, or nothing) */
+#define ELASTIC(S, m) \
+  {"material", KEY_CHOICE, offsetof(S, m material), "", "neo_hookean", 0, 0, 0, materials, "elastic law"}, \
+  {"density", KEY_REAL, offsetof(S, m density), "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "mass per reference volume"}, \
+  {"young", KEY_REAL, offsetof(S, m young), "Pa", NULL, 0, 1e15, KEY_LO_OPEN, NULL, "Young's modulus at small strain"}, \
+  {"poisson", KEY_REAL, offsetof(S, m poisson), "1", "0.3", -1, 0.5, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "Poisson's ratio at small strain"}
+
 #define ROW(key, type, unit, def, lo, hi, flags, choices, help)                                                                    \
   {                                                                                                                                \
 #key, type, offsetof(TLEDParams, key), unit, def, lo, hi, flags, choices, help                                                 \
@@ -11,12 +18,10 @@ static const char *const elements[]  = {"auto", "t4", "anp", NULL};             
 
 const Key TLEDKeys[] = {
     ROW(mesh, KEY_FILE, "", NULL, 0, 0, KEY_REQUIRED, NULL, "gmsh mesh of tetrahedra with named physical groups"),
-    ROW(density, KEY_REAL, "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "mass per reference volume"),
-    ROW(material, KEY_CHOICE, "", "neo_hookean", 0, 0, 0, materials, "elastic law"),
-    ROW(young, KEY_REAL, "Pa", NULL, 0, 1e15, KEY_LO_OPEN | KEY_REQUIRED, NULL, "Young's modulus at small strain"),
-    ROW(poisson, KEY_REAL, "1", "0.3", -1, 0.5, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "Poisson's ratio at small strain"),
+    ELASTIC(TLEDParams, elastic.),
+    ROW(materials, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "further materials, a section each"),
     ROW(element, KEY_CHOICE, "", "auto", 0, 0, 0, elements,
-        "t4: constant strain; anp: average nodal pressure, does not lock; auto: anp above poisson 0.4"),
+        "t4: constant strain; anp: average nodal pressure, does not lock; auto: anp when a material has poisson above 0.4"),
     ROW(fixed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes are held"),
     ROW(prescribed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes move with prescribed_velocity"),
     ROW(prescribed_velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "velocity of the groups in prescribed"),
@@ -28,3 +33,7 @@ const Key TLEDKeys[] = {
     ROW(translate, KEY_VEC3, "m", "0,0,0", -1e9, 1e9, 0, NULL, "shift of the mesh after scaling"),
     ROW(velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "initial velocity"),
     KEY_END};
+
+const Key TLEDMaterialKeys[] = {
+    {"volumes", KEY_NAMES, offsetof(TLEDMaterialParams, volumes), "", NULL, 0, 0, KEY_REQUIRED, NULL, "physical volumes of the mesh that are made of it"},
+    ELASTIC(TLEDMaterialParams, ), KEY_END};

@@ -10,6 +10,12 @@
 /* the laws, in the order of TLEDMaterial in tled.h */
 enum { TLED_LAW_NEO_HOOKEAN = 0, TLED_LAW_ST_VENANT_KIRCHHOFF = 1 };
 
+/* A law with its constants, as the loops take it. */
+typedef struct {
+  int    law;
+  double mu, lambda; /* Lame's constants [Pa] */
+} TLEDLaw;
+
 /* J - 1 = tr H + (sum of principal minors of H) + det H: exact, no cancellation at small strain. */
 BY_HD double TLEDJacobianMinusOne(const double H[9])
 {
@@ -128,17 +134,19 @@ BY_HD void TLEDStressStVenantKirchhoff(const double H[9], double mu, double lamb
   P[6] = F[6]*S[0] + F[7]*S[3] + F[8]*S[5]; P[7] = F[6]*S[3] + F[7]*S[1] + F[8]*S[4]; P[8] = F[6]*S[5] + F[7]*S[4] + F[8]*S[2];
 }
 
-/* energy of the law `law` [J/m^3] */
-BY_HD double TLEDEnergy(int law, const double H[9], double mu, double lambda)
+/* energy of a law [J/m^3]; a is the unit vector along the fibres, of no effect without them */
+BY_HD double TLEDEnergy(const TLEDLaw *m, const double a[3], const double H[9])
 {
-  return law == TLED_LAW_NEO_HOOKEAN ? TLEDEnergyNeoHookean(H, mu, lambda) : TLEDEnergyStVenantKirchhoff(H, mu, lambda);
+  (void)a;
+  return m->law == TLED_LAW_NEO_HOOKEAN ? TLEDEnergyNeoHookean(H, m->mu, m->lambda) : TLEDEnergyStVenantKirchhoff(H, m->mu, m->lambda);
 }
 
-/* stress of the law `law` [Pa]; ln_J and inv_J are used by the laws that need them */
-BY_HD void TLEDStress(int law, const double H[9], double ln_J, double inv_J, double mu, double lambda, double P[9])
+/* stress of a law [Pa]; ln_J and inv_J are used by the laws that need them */
+BY_HD void TLEDStress(const TLEDLaw *m, const double a[3], const double H[9], double ln_J, double inv_J, double P[9])
 {
-  if (law == TLED_LAW_NEO_HOOKEAN) TLEDStressNeoHookean(H, ln_J, inv_J, mu, lambda, P);
-  else TLEDStressStVenantKirchhoff(H, mu, lambda, P);
+  (void)a;
+  if (m->law == TLED_LAW_NEO_HOOKEAN) TLEDStressNeoHookean(H, ln_J, inv_J, m->mu, m->lambda, P);
+  else TLEDStressStVenantKirchhoff(H, m->mu, m->lambda, P);
 }
 
 /* Differential of P in the direction dF: dP = mu dF + (mu - lambda ln J) F^-T dF^T F^-T + lambda (F^-T : dF) F^-T */
@@ -186,11 +194,35 @@ BY_HD void TLEDStressDifferentialStVenantKirchhoff(const double H[9], const doub
   }
 }
 
-/* differential of the stress of the law `law` */
-BY_HD void TLEDStressDifferential(int law, const double H[9], const double dF[9], double mu, double lambda, double dP[9])
+/* differential of the stress of a law in the direction dF */
+BY_HD void TLEDStressDifferential(const TLEDLaw *m, const double a[3], const double H[9], const double dF[9], double dP[9])
 {
-  if (law == TLED_LAW_NEO_HOOKEAN) TLEDStressDifferentialNeoHookean(H, dF, mu, lambda, dP);
-  else TLEDStressDifferentialStVenantKirchhoff(H, dF, mu, lambda, dP);
+  (void)a;
+  if (m->law == TLED_LAW_NEO_HOOKEAN) TLEDStressDifferentialNeoHookean(H, dF, m->mu, m->lambda, dP);
+  else TLEDStressDifferentialStVenantKirchhoff(H, dF, m->mu, m->lambda, dP);
+}
+
+/* Poisson's ratio at small strain */
+BY_HD double TLEDPoisson(const TLEDLaw *m) { return 0.5*m->lambda / (m->lambda + m->mu); }
+
+/* The law with the volumetric stiffness of Poisson's ratio 1/3 at most, lambda' = min(lambda, 2 mu), in place of lambda: what is
+   taken out, lambda - lambda' [Pa], see TLEDElementSoften(). */
+BY_HD double TLEDExcessBulk(const TLEDLaw *m)
+{
+  const double most = 2.0*m->mu;
+
+  return m->lambda > most ? m->lambda - most : 0.0;
+}
+
+/* B with dP = ... + lambda (B : dF) B, the volumetric part of the differential: F^-T, or F in the law of St Venant and Kirchhoff */
+BY_HD void TLEDBulkDirection(const TLEDLaw *m, const double H[9], double B[9])
+{
+  const double inv_J = 1.0 / (1.0 + TLEDJacobianMinusOne(H));
+  double       F[9];
+
+  TLEDDeformationGradient(H, F);
+  TLEDCofactor(F, B);
+  for (int k = 0; k < 9; k++) B[k] = m->law == TLED_LAW_ST_VENANT_KIRCHHOFF ? F[k] : inv_J*B[k];
 }
 
 #endif

@@ -166,18 +166,20 @@ static PetscErrorCode GetBoundary(const char key[], DM dm, TLEDMesh *mesh, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* nodes and boundary triangles of one group from the label of its name */
+/* nodes, boundary triangles and elements of one group from the label of its name */
 static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLEDMesh *mesh, TLEDGroup *group)
 {
   DMLabel         label;
   IS              points, values;
   PetscInt        i, j, k, n, n_values, n_points, n_closure, f_start, f_end, v_start, v_end, *closure = NULL;
   const PetscInt *point, *value;
-  PetscBool      *in_group, *is_triangle;
+  PetscInt        c_start, c_end, n_tets = mesh->n_tets;
+  PetscBool      *in_group, *is_triangle, *is_tet;
 
   PetscFunctionBegin;
   PetscCall(DMGetLabel(dm, group->name, &label));
-  PetscCall(PetscCalloc2(mesh->n_nodes, &in_group, mesh->n_triangles, &is_triangle));
+  PetscCall(PetscCalloc3(mesh->n_nodes, &in_group, mesh->n_triangles, &is_triangle, n_tets, &is_tet));
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
   PetscCall(DMPlexGetHeightStratum(dm, 1, &f_start, &f_end));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
   if (label) {
@@ -189,6 +191,7 @@ static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLED
       PetscCall(ISGetLocalSize(points, &n_points));
       PetscCall(ISGetIndices(points, &point));
       for (j = 0; j < n_points; j++) {
+        if (point[j] >= c_start && point[j] < c_end) is_tet[point[j] - c_start] = PETSC_TRUE;
         if (point[j] >= f_start && point[j] < f_end && face_triangle[point[j] - f_start] >= 0)
           is_triangle[face_triangle[point[j] - f_start]] = PETSC_TRUE;
         PetscCall(DMPlexGetTransitiveClosure(dm, point[j], PETSC_TRUE, &n_closure, &closure));
@@ -202,6 +205,10 @@ static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLED
     PetscCall(ISRestoreIndices(values, &value));
     PetscCall(ISDestroy(&values));
   }
+  for (i = 0; i < n_tets; i++) group->n_tets += is_tet[i];
+  PetscCall(PetscMalloc1(group->n_tets, &group->tets));
+  for (i = 0, n = 0; i < n_tets; i++)
+    if (is_tet[i]) group->tets[n++] = i;
   for (i = 0; i < mesh->n_nodes; i++) group->n_nodes += in_group[i];
   for (i = 0; i < mesh->n_triangles; i++) group->n_triangles += group->dim == 2 && is_triangle[i];
   PetscCall(PetscMalloc2(group->n_nodes, &group->nodes, group->n_triangles, &group->triangles));
@@ -209,7 +216,7 @@ static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLED
     if (in_group[i]) group->nodes[n++] = i;
   for (i = 0, n = 0; i < mesh->n_triangles && group->dim == 2; i++)
     if (is_triangle[i]) group->triangles[n++] = i;
-  PetscCall(PetscFree2(in_group, is_triangle));
+  PetscCall(PetscFree3(in_group, is_triangle, is_tet));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -275,7 +282,11 @@ PetscErrorCode TLEDMeshDestroy_Private(TLEDMesh *mesh)
   PetscInt g;
 
   PetscFunctionBegin;
-  for (g = 0; g < mesh->n_groups && mesh->groups; g++) PetscCall(PetscFree2(mesh->groups[g].nodes, mesh->groups[g].triangles));
+  for (g = 0; g < mesh->n_groups && mesh->groups; g++) {
+    PetscCall(PetscFree2(mesh->groups[g].nodes, mesh->groups[g].triangles));
+    PetscCall(PetscFree(mesh->groups[g].tets));
+  }
+  PetscCall(PetscFree(mesh->material));
   PetscCall(PetscFree(mesh->groups));
   PetscCall(PetscFree(mesh->triangles));
   PetscCall(PetscFree3(mesh->X, mesh->tets, mesh->tag));
@@ -344,8 +355,8 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
     }
   }
   if (*group && dim && (*group)->dim != dim)
-    PetscFunctionReturn(InputError(key, "names the group %s of %s, which is not a surface\n  groups in the mesh: %s", name,
-                                   slash ? slash + 1 : path, list));
+    PetscFunctionReturn(InputError(key, "names the group %s of %s, which is not a %s\n  groups in the mesh: %s", name,
+                                   slash ? slash + 1 : path, dim == 3 ? "volume" : "surface", list));
   if (*group)
     PetscFunctionReturn(
         InputError(key, "names the group %s of %s, which holds no surface or volume of the mesh\n  groups in the mesh: %s", name,

@@ -2,7 +2,6 @@
 
    Every function may be called by all threads of a parallel region (the work is shared, with a barrier at the end) or outside. */
 #include "tled/tled_impl.h"
-#include "tled/tled_element.h"
 #include <omp.h>
 
 #define L TLED_LANES
@@ -157,13 +156,26 @@ INLINE void LaneGradient(const Pack *p, int l, double H[9])
   H[8] = p->H[8][l];
 }
 
-INLINE void PackForces(int law, const Pack *p, const double G[], const double V0[], double mu, double lambda, double f[12][L])
+/* Unit vector along the fibres of a lane. */
+INLINE void LaneFibre(const double fibre[], int l, double a[3])
 {
+  a[0] = fibre ? fibre[l] : 0.0;
+  a[1] = fibre ? fibre[L + l] : 0.0;
+  a[2] = fibre ? fibre[2 * L + l] : 0.0;
+}
+
+INLINE void PackForces(int law, const TLEDLaw *material, const Pack *p, const double fibre[], const double G[], const double V0[],
+                       double f[12][L])
+{
+  TLEDLaw m = *material;
+
+  m.law = law; /* known to the compiler */
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
-    double H[9], P[9];
+    double H[9], P[9], a[3];
     LaneGradient(p, l, H);
-    TLEDStress(law, H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), mu, lambda, P);
+    LaneFibre(fibre, l, a);
+    TLEDStress(&m, a, H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), P);
     StoreForces(P, G, V0, l, f);
   }
 }
@@ -195,7 +207,8 @@ static void ClearForces(const TLEDBlocks *b, int block, Scratch *s)
   for (int a = 0; a < n; a++) s->f[a] = (Row){0.0, 0.0, 0.0, 0.0};
 }
 
-static void ForcesT4(const TLEDLoops *w, const double u[])
+/* forces of all four-node tetrahedra */
+void TLEDForcesT4_OpenMP(const TLEDLoops *w, const double u[])
 {
   const TLEDBlocks *b = w->blocks;
 
@@ -209,12 +222,16 @@ static void ForcesT4(const TLEDLoops *w, const double u[])
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
       const int    *local = b->local + 4 * L * pack;
-      const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack;
+      const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack, *fibre = b->fibre ? b->fibre + 3 * L * pack : NULL;
+      const TLEDLaw *m = &w->laws[b->material[pack]];
       broken += PackGradients(local, G, &s, &p);
-      if (w->law == TLED_LAW_NEO_HOOKEAN) {
+      switch (m->law) {
+      case TLED_LAW_NEO_HOOKEAN:
         PackLogarithms(p.jm1, p.ln_J);
-        PackForces(TLED_LAW_NEO_HOOKEAN, &p, G, V0, w->mu, w->lambda, f);
-      } else PackForces(TLED_LAW_ST_VENANT_KIRCHHOFF, &p, G, V0, w->mu, w->lambda, f);
+        PackForces(TLED_LAW_NEO_HOOKEAN, m, &p, NULL, G, V0, f);
+        break;
+      default: PackForces(TLED_LAW_ST_VENANT_KIRCHHOFF, m, &p, fibre, G, V0, f); break;
+      }
       AddForces(local, f, &s);
     }
     StoreBlock(b, block, &s, w->partial);
@@ -284,20 +301,23 @@ static void PackSum(const int local[], const double value[], double factor, doub
 
 /* Stress of the averaged gradient: V0 pbar of each lane or, with `forces`, the forces with the nodal pressures of the lanes.
    ln_Jbar is used by the laws that need it. */
-INLINE void PackAverage(int law, int forces, const TLEDLoops *w, const Pack *p, const double jbar[], const double nodal[],
-                        const double G[], const double V0[], double pbar[], double f[12][L])
+INLINE void PackAverage(int law, int forces, const TLEDLaw *material, const Pack *p, const double jbar[], const double nodal[],
+                        const double fibre[], const double G[], const double V0[], double pbar[], double f[12][L])
 {
-  const double mu = w->mu, lambda = w->lambda;
-  double       ln_Jbar[L] = {0.0};
+  double  ln_Jbar[L] = {0.0};
+  TLEDLaw m          = *material;
+
+  m.law = law; /* known to the compiler */
 
   if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(jbar, ln_Jbar);
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
     const double Jbar = 1.0 + jbar[l], inv_J = 1.0 / (1.0 + p->jm1[l]);
-    double       H[9], Hbar[9], P[9];
+    double       H[9], Hbar[9], P[9], a[3];
     LaneGradient(p, l, H);
+    LaneFibre(fibre, l, a);
     const double r = TLEDAverageGradient(H, inv_J, Jbar, Hbar);
-    TLEDStress(law, Hbar, ln_Jbar[l], 1.0 / Jbar, mu, lambda, P);
+    TLEDStress(&m, a, Hbar, ln_Jbar[l], 1.0 / Jbar, P);
     const double q = TLEDAveragePressure(Hbar, P, Jbar);
     if (forces) {
       TLEDAverageStress(H, r, inv_J, Jbar, q, nodal[l], P);
@@ -306,8 +326,18 @@ INLINE void PackAverage(int law, int forces, const TLEDLoops *w, const Pack *p, 
   }
 }
 
+/* the same with the law known to the compiler */
+INLINE void PackAverageLaw(int forces, const TLEDLaw *m, const Pack *p, const double jbar[], const double nodal[], const double fibre[],
+                           const double G[], const double V0[], double pbar[], double f[12][L])
+{
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN: PackAverage(TLED_LAW_NEO_HOOKEAN, forces, m, p, jbar, nodal, NULL, G, V0, pbar, f); break;
+  default: PackAverage(TLED_LAW_ST_VENANT_KIRCHHOFF, forces, m, p, jbar, nodal, fibre, G, V0, pbar, f); break;
+  }
+}
+
 /* one pass of the average nodal pressure element: the pressures that elements pass to their nodes, or the forces */
-INLINE void PassAverage(int law, int forces, const TLEDLoops *w, const double u[])
+INLINE void PassAverage(int forces, const TLEDLoops *w, const double u[])
 {
   const TLEDBlocks *b = w->blocks;
 
@@ -322,15 +352,16 @@ INLINE void PassAverage(int law, int forces, const TLEDLoops *w, const double u[
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
       const int    *local = b->local + 4 * L * pack;
-      const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack;
+      const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack, *fibre = b->fibre ? b->fibre + 3 * L * pack : NULL;
+      const TLEDLaw *m = &w->laws[b->material[pack]];
       (void)PackGradients(local, G, &s, &p);
       PackSum(local, s.value[0], 0.25, jbar);
       if (forces) {
         PackSum(local, s.value[1], 1.0, nodal);
-        PackAverage(law, 1, w, &p, jbar, nodal, G, V0, pbar, f);
+        PackAverageLaw(1, m, &p, jbar, nodal, fibre, G, V0, pbar, f);
         AddForces(local, f, &s);
       } else {
-        PackAverage(law, 0, w, &p, jbar, nodal, G, V0, pbar, f);
+        PackAverageLaw(0, m, &p, jbar, nodal, fibre, G, V0, pbar, f);
         AddValues(local, pbar, &s);
       }
     }
@@ -346,18 +377,17 @@ int TLEDThreads_OpenMP(const TLEDLoops *w)
   return wanted < 1 ? 1 : wanted < most ? wanted : most;
 }
 
-/* Forces of all elements at displacement u [m] into the blocks' partial sums, and the blocks' status. */
-void TLEDElementForces_OpenMP(const TLEDLoops *w, const double u[])
+/* forces of all tetrahedra of average nodal pressure */
+void TLEDForcesANP_OpenMP(const TLEDLoops *w, const double u[])
 {
-  if (w->anp) {
-    TLEDNodalVolumes_OpenMP(w, u);
-    if (w->law == TLED_LAW_NEO_HOOKEAN) PassAverage(TLED_LAW_NEO_HOOKEAN, 0, w, u);
-    else PassAverage(TLED_LAW_ST_VENANT_KIRCHHOFF, 0, w, u);
-    GatherAverage(w, 0.25, w->pressure);
-    if (w->law == TLED_LAW_NEO_HOOKEAN) PassAverage(TLED_LAW_NEO_HOOKEAN, 1, w, u);
-    else PassAverage(TLED_LAW_ST_VENANT_KIRCHHOFF, 1, w, u);
-  } else ForcesT4(w, u);
+  TLEDNodalVolumes_OpenMP(w, u);
+  PassAverage(0, w, u);
+  GatherAverage(w, 0.25, w->pressure);
+  PassAverage(1, w, u);
 }
+
+/* Forces of all elements at displacement u [m] into the blocks' partial sums, and the blocks' status. */
+void TLEDElementForces_OpenMP(const TLEDLoops *w, const double u[]) { w->ops->forces(w, u); }
 
 /* Each node adds its blocks: f [N], n_nodes x 3. */
 void TLEDGatherForces_OpenMP(const TLEDLoops *w, double f[])

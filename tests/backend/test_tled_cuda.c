@@ -23,7 +23,7 @@ static void DeviceForces_AreTheCPUs(void **state)
     PetscReal       *on_device, *again, top;
     PetscInt         n;
 
-    p->material = law;
+    p->elastic.material = law;
     assert_petsc(TLEDSetUp(tled));
     assert_petsc(TLEDGetSize(tled, &n, NULL));
     assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));

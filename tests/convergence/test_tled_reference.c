@@ -50,8 +50,8 @@ static void Relaxation_ReachesTheStaticState(void **state)
     PetscInt         n, tip;
     TLEDStats        s;
 
-    p->material = beam[i].material;
-    p->poisson  = beam[i].poisson;
+    p->elastic.material = beam[i].material;
+    p->elastic.poisson  = beam[i].poisson;
     p->damping  = 14.0; /* twice the lowest frequency, 1.15 Hz: critical */
     assert_petsc(TLEDSetUp(tled));
     tip = NodeAt(tled, 1.0, 0.05, 0.05);
@@ -154,8 +154,8 @@ static void NearIncompressibility_DoesNotLockAnp(void **state)
 
       snprintf(path, sizeof path, "tests/meshes/%s", mesh[i]);
       tled       = NewBody(path, &p);
-      p->poisson = 0.499;
-      p->young   = 2 * 80.194e6 * 1.499;
+      p->elastic.poisson = 0.499;
+      p->elastic.young   = 2 * 80.194e6 * 1.499;
       p->element = element;
       p->damping = 4000.0;
       AddName(&p->fixed, "clamp");
@@ -201,7 +201,7 @@ static void AnpTangent_AnswersLikeTheElement(void **state)
 
   (void)state;
   p->element = TLED_ELEMENT_ANP;
-  p->poisson = 0.45;
+  p->elastic.poisson = 0.45;
   p->damping = 14.0;
   assert_petsc(TLEDSetGravity(tled, g));
   assert_petsc(TLEDSetUp(tled));

@@ -25,9 +25,9 @@ static inline TLED NewBody(const char mesh[], TLEDParams **params)
   assert_petsc(TLEDCreate(PETSC_COMM_SELF, "body", &tled));
   assert_petsc(TLEDGetParams(tled, params));
   snprintf((*params)->mesh, sizeof(*params)->mesh, "%s", MeshPath(mesh));
-  (*params)->young   = 3e6;
-  (*params)->density = 1000.0;
-  (*params)->poisson = 0.3;
+  (*params)->elastic.young   = 3e6;
+  (*params)->elastic.density = 1000.0;
+  (*params)->elastic.poisson = 0.3;
   (*params)->element = TLED_ELEMENT_T4;
   return tled;
 }

@@ -22,9 +22,9 @@ static TLED Cube(int law, int element, TLEDParams **p)
 {
   TLED tled = NewBody("tests/meshes/cube_h1.msh", p);
 
-  (*p)->material = law;
+  (*p)->elastic.material = law;
   (*p)->element  = element;
-  (*p)->young    = 2.0 * reference_mu * 1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
+  (*p)->elastic.young    = 2.0 * reference_mu * 1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
   assert_petsc(TLEDSetUp(tled));
   return tled;
 }

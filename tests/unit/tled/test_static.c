@@ -74,8 +74,8 @@ static void Solve(const Reference *ref)
   Vec              u;
   PetscInt         it = 0, tip;
 
-  p->material = ref->material;
-  p->poisson  = ref->poisson;
+  p->elastic.material = ref->material;
+  p->elastic.poisson  = ref->poisson;
   AddName(&p->fixed, "clamp");
   assert_petsc(TLEDSetUp(tled));
   assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));

@@ -16,7 +16,7 @@ static TLED FreeBody(int element, TLEDParams **p)
   TLED tled = NewBody("tests/meshes/beam_h1.msh", p);
 
   (*p)->element = element;
-  (*p)->poisson = element == TLED_ELEMENT_ANP ? 0.45 : 0.3;
+  (*p)->elastic.poisson = element == TLED_ELEMENT_ANP ? 0.45 : 0.3;
   return tled;
 }
 

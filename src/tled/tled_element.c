@@ -1,0 +1,66 @@
+/* tled_element.c - the kinds of elements, which of them a body has, and one integration point of an element for the loops that are
+   not part of a step. */
+#include "tled/tled_impl.h"
+
+/* linear tetrahedra: the gradients of nodes 1 to 3 are stored, that of node 0 is minus their sum */
+static void PointLinear(const TLEDBlocks *b, int l, int point, double G[], double *V0)
+{
+  const int pack = l / TLED_LANES, lane = l % TLED_LANES;
+
+  (void)point; /* the only one */
+  for (int k = 0; k < 9; k++) G[3 + k] = b->G[(9 * pack + k) * TLED_LANES + lane];
+  for (int k = 0; k < 3; k++) G[k] = -(G[3 + k] + G[6 + k] + G[9 + k]);
+  *V0 = b->V0[l];
+}
+
+const TLEDElementOps TLEDElementT4  = {"t4", 4, 0, TLEDForcesT4_OpenMP, PointLinear};
+const TLEDElementOps TLEDElementANP = {"anp", 4, 1, TLEDForcesANP_OpenMP, PointLinear};
+
+/* loops->ops from the key `element`; the laws are known */
+PetscErrorCode TLEDElementPick_Private(TLED tled)
+{
+  PetscBool soft = PETSC_FALSE; /* a nearly incompressible material */
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < tled->n_materials; k++) soft = (PetscBool)(soft || TLEDPoisson(&tled->laws[k]) > 0.4);
+  if (tled->params.element == TLED_ELEMENT_ANP || (tled->params.element == TLED_ELEMENT_AUTO && soft))
+    tled->loops.ops = &TLEDElementANP;
+  else tled->loops.ops = &TLEDElementT4;
+  tled->loops.anp = tled->loops.ops->averaged;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  TLEDPointAt_Private - one integration point of an element at displacement u
+
+  Input Parameters:
++ loops - with the nodal volume ratios at u in loops->nodal (TLEDNodalVolumes_OpenMP) when the element averages them
+. tets  - nodes of all elements
+. lane  - place of the element, not padding
+. point - number of the integration point
+- u     - displacement [m], n_nodes x 3
+
+  Output Parameter:
+. p - law, gradients, volume, deformation
+*/
+void TLEDPointAt_Private(const TLEDLoops *w, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p)
+{
+  const TLEDBlocks *b      = w->blocks;
+  const int         n      = w->ops->n_corners, pack = lane / TLED_LANES;
+  const PetscInt   *corner = &tets[n * b->element[lane]];
+
+  p->law = &w->laws[b->material[pack]];
+  w->ops->point(b, lane, point, p->G, &p->V0);
+  for (int k = 0; k < 9; k++) p->H[k] = 0.0;
+  for (int a = 1; a < n; a++) /* differences keep the digits of small strains in a body that has moved far */
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) p->H[3 * i + j] += (u[3 * corner[a] + i] - u[3 * corner[0] + i]) * p->G[3 * a + j];
+  p->jm1 = TLEDJacobianMinusOne(p->H);
+  for (int k = 0; k < 3; k++) p->fibre[k] = b->fibre ? b->fibre[(3 * pack + k) * TLED_LANES + lane % TLED_LANES] : 0.0;
+  for (int k = 0; k < 9; k++) p->seen[k] = p->H[k];
+  if (w->ops->averaged) {
+    double jbar = 0.0;
+    for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]];
+    (void)TLEDAverageGradient(p->H, 1.0 / (1.0 + p->jm1), 1.0 + jbar, p->seen);
+  }
+}
