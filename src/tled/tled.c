@@ -220,9 +220,11 @@ PetscErrorCode TLEDSetUp(TLED tled)
   PetscCheck(!tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() was called before");
   PetscCall(PetscSNPrintf(key, sizeof key, "%s.mesh", ((PetscObject)tled)->name));
   ByCall(TLEDMeshRead_Private(key, &tled->params, &tled->mesh));
+  if (tled->mesh.n_corners != 4)
+    PetscFunctionReturn(InputError(key, "holds a second-order (10-node) tetrahedron\n  expected a mesh of first-order (4-node) tetrahedra only"));
   ByCall(TLEDMaterialsSetUp_Private(tled));
   PetscCall(TLEDElementPick_Private(tled));
-  PetscCall(TLEDBlocksCreate_Private(&tled->mesh, &tled->blocks));
+  PetscCall(TLEDBlocksCreate_Private(&tled->mesh, 1, &tled->blocks));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(MarkNodes(tled, "fixed", &tled->params.fixed, TLED_FIXED));
   ByCall(MarkNodes(tled, "prescribed", &tled->params.prescribed, TLED_PRESCRIBED));

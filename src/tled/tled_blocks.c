@@ -1,6 +1,7 @@
 /* tled_blocks.c - tetrahedra cut into cache-sized blocks by METIS, nodes and elements renumbered along them, packed for vector
  * loops. */
 #include "tled/tled_impl.h"
+#include "tled/tled_t10.h"
 #include <metis.h>
 
 /* part[e]: the METIS part of each tetrahedron, from the graph of elements that share a face. Recursive bisection gives neighbours
@@ -9,13 +10,14 @@ static PetscErrorCode CutElements(const TLEDMesh *mesh, PetscInt part[])
 {
   idx_t  n_tets = mesh->n_tets, n_nodes = mesh->n_nodes, n_common = 3, n_parts, cut, options[METIS_NOPTIONS];
   idx_t *offset, *corner, *element_part, *node_part;
+  idx_t  n_part = (mesh->n_corners == 4 ? TLED_BLOCK_TETS : TLED_BLOCK_TETS_T10) * 7 / 8; /* an eighth of room for METIS's imbalance */
   int    status;
 
   PetscFunctionBegin;
-  n_parts = (n_tets + (TLED_BLOCK_TETS * 7) / 8 - 1) / ((TLED_BLOCK_TETS * 7) / 8); /* an eighth of room for METIS's imbalance */
+  n_parts = (n_tets + n_part - 1) / n_part;
   PetscCall(PetscMalloc4(n_tets + 1, &offset, 4 * n_tets, &corner, n_tets, &element_part, n_nodes, &node_part));
   for (PetscInt e = 0; e <= n_tets; e++) offset[e] = 4 * e;
-  for (PetscInt k = 0; k < 4 * n_tets; k++) corner[k] = mesh->tets[k];
+  for (PetscInt k = 0; k < 4 * n_tets; k++) corner[k] = mesh->tets[mesh->n_corners * (k / 4) + k % 4]; /* vertices are enough */
   for (PetscInt e = 0; e < n_tets; e++) element_part[e] = 0;
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_PTYPE] = METIS_PTYPE_RB;
@@ -32,8 +34,9 @@ static PetscErrorCode CutElements(const TLEDMesh *mesh, PetscInt part[])
 /* new numbers: elements by part and material, nodes in the order in which these meet them; nodes of no element are dropped */
 static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
 {
-  PetscInt  *order, *key, *number, n = 0, m, *tets, *tag, *material, *place;
-  PetscReal *X;
+  const PetscInt n_corners = mesh->n_corners;
+  PetscInt      *order, *key, *number, n = 0, m, *tets, *tag, *material, *place;
+  PetscReal     *X;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(mesh->n_tets, &order, mesh->n_tets, &key, mesh->n_nodes, &number));
@@ -45,21 +48,22 @@ static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
     first = e + 1;
   }
   for (PetscInt a = 0; a < mesh->n_nodes; a++) number[a] = -1;
-  PetscCall(PetscMalloc3(3 * mesh->n_nodes, &X, 4 * mesh->n_tets, &tets, mesh->n_tets, &tag));
+  PetscCall(PetscMalloc3(3 * mesh->n_nodes, &X, n_corners * mesh->n_tets, &tets, mesh->n_tets, &tag));
   PetscCall(PetscMalloc1(mesh->n_tets, &material));
   PetscCall(PetscMalloc1(mesh->n_tets, &place));
   for (PetscInt e = 0; e < mesh->n_tets; e++) {
     tag[e] = mesh->tag[order[e]], material[e] = mesh->material[order[e]], place[order[e]] = e;
-    for (PetscInt a = 0; a < 4; a++) {
-      const PetscInt old = mesh->tets[4 * order[e] + a];
+    for (PetscInt a = 0; a < n_corners; a++) {
+      const PetscInt old = mesh->tets[n_corners * order[e] + a];
       if (number[old] < 0) {
         for (PetscInt k = 0; k < 3; k++) X[3 * n + k] = mesh->X[3 * old + k];
         number[old] = n++;
       }
-      tets[4 * e + a] = number[old];
+      tets[n_corners * e + a] = number[old];
     }
   }
   for (PetscInt k = 0; k < 3 * mesh->n_triangles; k++) mesh->triangles[k] = number[mesh->triangles[k]];
+  for (PetscInt k = 0; k < mesh->n_face_nodes * mesh->n_faces; k++) mesh->faces[k] = number[mesh->faces[k]];
   for (PetscInt g = 0; g < mesh->n_groups; g++) {
     TLEDGroup *group = &mesh->groups[g];
     m                = 0;
@@ -82,12 +86,13 @@ static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
    the second walk fills. local_of[a] and block_of[a] are work of n_nodes. */
 static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of[], int local_of[], TLEDBlocks *b, PetscBool fill)
 {
-  int n_in_block = 0, n_nodes = 0, lane = 0;
+  const int n_corners = (int)mesh->n_corners, n_max = n_corners == 4 ? TLED_BLOCK_TETS : TLED_BLOCK_TETS_T10;
+  int       n_in_block = 0, n_nodes = 0, lane = 0;
 
   b->n_blocks = b->n_packs = b->n_slots = 0;
   for (PetscInt a = 0; a < mesh->n_nodes; a++) block_of[a] = -1;
   for (PetscInt e = 0; e < mesh->n_tets; e++) {
-    if (e == 0 || part[e] != part[e - 1] || n_in_block == TLED_BLOCK_TETS || n_nodes + 4 > TLED_BLOCK_NODES) {
+    if (e == 0 || part[e] != part[e - 1] || n_in_block == n_max || n_nodes + n_corners > TLED_BLOCK_NODES) {
       if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
       b->n_blocks++;
       n_in_block = n_nodes = lane = 0;
@@ -97,14 +102,14 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
       b->n_packs++;
     }
     n_in_block++;
-    for (PetscInt k = 0; k < 4; k++) {
-      const PetscInt a = mesh->tets[4 * e + k];
+    for (PetscInt k = 0; k < n_corners; k++) {
+      const PetscInt a = mesh->tets[n_corners * e + k];
       if (block_of[a] != b->n_blocks) {
         block_of[a] = b->n_blocks, local_of[a] = n_nodes++;
         if (fill) b->node[b->n_slots] = (int)a;
         b->n_slots++;
       }
-      if (fill) b->local[(4 * (b->n_packs - 1) + k) * TLED_LANES + lane] = local_of[a];
+      if (fill) b->local[(n_corners * (b->n_packs - 1) + k) * TLED_LANES + lane] = local_of[a];
     }
     if (fill) b->element[(b->n_packs - 1) * TLED_LANES + lane] = (int)e;
     lane = (lane + 1) % TLED_LANES;
@@ -112,17 +117,23 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
   if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
 }
 
-/* gradients and volumes of each lane */
+/* of each lane and integration point what the element needs: gradients of nodes 1 to 3 and volume, or Jinv and weight times Jacobian */
 static void FillGeometry(const TLEDMesh *mesh, TLEDBlocks *b)
 {
+  const int n = b->n_corners;
+
   for (int l = 0; l < b->n_packs * TLED_LANES; l++) {
     const int pack = l / TLED_LANES, lane = l % TLED_LANES, e = b->element[l];
-    double    x[12], G[9] = {0.0};
+    double    x[3 * TLED_CORNERS_MAX], G[9] = {0.0}, L[4];
     if (e < 0) continue;
-    for (int a = 0; a < 4; a++)
-      for (int k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[4 * e + a] + k];
-    b->V0[l] = TLEDReferenceGradients(x, G);
-    for (int k = 0; k < 9; k++) b->G[(9 * pack + k) * TLED_LANES + lane] = G[k];
+    for (int a = 0; a < n; a++)
+      for (int k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[n * e + a] + k];
+    for (int q = 0; q < b->n_points; q++) {
+      const int    place = (b->n_points * pack + q) * TLED_LANES;
+      const double w     = n == 4 ? 1.0 : TLEDQuadratureT10(b->n_points, q, L);
+      b->V0[place + lane] = n == 4 ? TLEDReferenceGradients(x, G) : w * TLEDJacobianT10(L, x, G);
+      for (int k = 0; k < 9; k++) b->G[9 * place + k * TLED_LANES + lane] = G[k];
+    }
   }
 }
 
@@ -143,13 +154,16 @@ static PetscErrorCode FillSlots(TLEDBlocks *b)
 /*
   TLEDBlocksCreate_Private - renumber the mesh for locality and cut it into blocks
 
+  Input Parameter:
+. n_points - integration points of an element
+
   Input/Output Parameter:
 . mesh - nodes, elements, triangles and groups get new numbers; nodes of no element disappear
 
   Output Parameter:
 . blocks - the elements in blocks and packs; the cut depends on the mesh alone, not on threads
 */
-PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *b)
+PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks *b)
 {
   PetscInt *part;
   int      *block_of, *local_of;
@@ -162,12 +176,12 @@ PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *b)
   PetscCall(PetscSortInt(mesh->n_tets, part)); /* elements now lie in the order of their parts */
   PetscCall(PetscMalloc2(mesh->n_nodes, &block_of, mesh->n_nodes, &local_of));
   b->n_nodes   = (int)mesh->n_nodes;
-  b->n_corners = 4;
-  b->n_points  = 1;
+  b->n_corners = (int)mesh->n_corners;
+  b->n_points  = n_points;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_FALSE);
   PetscCall(PetscMalloc3(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node));
-  PetscCall(PetscCalloc4(4 * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element, 9 * b->n_packs * TLED_LANES,
-                         &b->G, b->n_packs * TLED_LANES, &b->V0));
+  PetscCall(PetscCalloc4(b->n_corners * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element,
+                         9 * n_points * b->n_packs * TLED_LANES, &b->G, n_points * b->n_packs * TLED_LANES, &b->V0));
   PetscCall(PetscMalloc1(b->n_packs, &b->material));
   for (int l = 0; l < b->n_packs * TLED_LANES; l++) b->element[l] = -1;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_TRUE);

@@ -9,11 +9,17 @@
 
 #define TLED_LANES           8   /* elements that are worked on at once: one AVX-512 register of doubles          */
 #define TLED_BLOCK_TETS      256 /* elements of a block at most: its gradients and nodes stay in a core's L1/L2 cache */
+#define TLED_BLOCK_TETS_T10  96  /* the same of ten-node elements, which carry four times as much                  */
 #define TLED_BLOCK_NODES     256 /* nodes of a block at most                                                       */
 #define TLED_CHUNK           128 /* nodes whose contributions to a sum are added first, for any number of threads  */
 #define TLED_THREAD_BLOCKS   12  /* blocks that make one more thread worth its barriers, also on a busy machine       */
 #define TLED_MATERIALS       (BY_NAMES_MAX + 1) /* of a body at most: its own and the further ones                 */
+#define TLED_CORNERS_MAX     10  /* nodes of an element at most                                                    */
+#define TLED_GROUPS_MAX      62  /* named physical groups of a mesh: bits of a 64-bit number                       */
 #define TLED_MESSAGE         512 /* characters of a breakdown message                                              */
+
+/* gmsh's numbers of the kinds of elements that make a mesh */
+enum { TLED_GMSH_TRIANGLE3 = 2, TLED_GMSH_TET4 = 4, TLED_GMSH_TRIANGLE6 = 9, TLED_GMSH_TET10 = 11 };
 
 /* A named physical group of the mesh file. */
 typedef struct {
@@ -29,25 +35,30 @@ typedef struct {
 
 /* The mesh as read, then renumbered block by block. */
 typedef struct {
-  PetscInt   n_nodes, n_tets, n_triangles, n_groups;
+  PetscInt   n_nodes, n_tets, n_faces, n_triangles, n_groups;
   PetscInt   n_corners; /* nodes of a tetrahedron: 4, or 10 in VTK's order  */
+  PetscInt   n_face_nodes; /* 3, or 6: corners, then the nodes after each along the edges */
   PetscReal *X;         /* n_nodes x 3 [m]                                  */
   PetscInt  *tets;      /* n_tets x n_corners                               */
   PetscInt  *tag;       /* number of each tetrahedron in the gmsh file      */
   PetscInt  *material;  /* n_tets: number of the law in TLEDLoops.laws      */
-  PetscInt  *triangles; /* boundary, n_triangles x 3, outward               */
+  PetscInt  *faces;     /* boundary, n_faces x n_face_nodes, outward        */
+  PetscInt  *triangles; /* these as n_triangles x 3: the face, or four for a quadratic one */
   TLEDGroup *groups;
 } TLEDMesh;
 
-/* What the header and the element list of a gmsh file say, before PETSc reads it. */
+/* What a gmsh file holds. */
 typedef struct {
-  PetscInt  n_groups;                       /* named physical groups     */
-  char      name[BY_NAMES_MAX][BY_NAME_MAX];
-  PetscInt  dim[BY_NAMES_MAX];
-  PetscInt  n_tets, n_triangles;            /* first order; -1: not counted (binary file) */
-  PetscInt  n_other;                        /* 1: there is an element of another kind or of higher order */
-  char      other[64];                      /* what it is */
-  PetscInt *tag;                            /* number of each tetrahedron, in the file's order; NULL for a binary file */
+  PetscInt     n_groups; /* named physical groups                             */
+  char         name[TLED_GROUPS_MAX][BY_NAME_MAX];
+  PetscInt     dim[TLED_GROUPS_MAX], number[TLED_GROUPS_MAX];
+  PetscInt     n_nodes, n_elements;
+  PetscReal   *X;        /* n_nodes x 3, in the file's order                  */
+  signed char *type;     /* n_elements: gmsh's number of the kind             */
+  PetscInt    *tag;      /* n_elements: number in the file                    */
+  PetscInt    *first;    /* n_elements + 1, into corner                       */
+  PetscInt    *corner;   /* nodes of the elements, places in X                */
+  PetscInt64  *groups;   /* n_elements: bit g: it belongs to named group g    */
 } TLEDGmshFile;
 
 /* Elements in blocks, a block's elements in packs of TLED_LANES as structures of arrays; the elements of a pack are of one material. Each block adds up the forces on its own nodes
@@ -174,7 +185,7 @@ extern const TLEDElementOps TLEDElementT4, TLEDElementANP;
 PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */
 void           TLEDPointAt_Private(const TLEDLoops *loops, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p);
 /* tled_blocks.c */
-PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, TLEDBlocks *blocks);
+PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks *blocks);
 PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);
 /* tled_openmp.c: called by all threads of a parallel region, or outside one */
 int  TLEDThreads_OpenMP(const TLEDLoops *loops); /* threads that are worth while */

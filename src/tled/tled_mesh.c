@@ -1,248 +1,272 @@
-/* tled_mesh.c - gmsh mesh through PETSc DMPlex: nodes, tetrahedra, outward boundary triangles, physical groups by name. */
+/* tled_mesh.c - from what a gmsh file holds to the mesh of a body: tetrahedra, outward boundary faces, physical groups by name. */
 #include "tled/tled_impl.h"
 #include "tled/tled_element.h"
-#include <petscdmplex.h>
+#include "tled/tled_t10.h"
 #include <string.h>
 
-/* Let PETSc read the file, without its traceback: a file it cannot read is the user's. The option is given for this call only. */
-static PetscErrorCode ReadPlex(const char key[], const char path[], DM *dm)
-{
-  const char     option[] = "-dm_plex_gmsh_use_regions";
-  PetscBool      given;
-  PetscErrorCode ierr;
+/* Faces of the tetrahedra by their vertices: those with the smallest vertex v are entries first[v] ... first[v] + n[v] - 1. */
+typedef struct {
+  PetscInt *first, *n; /* n_nodes + 1, n_nodes                                                  */
+  PetscInt *rest;      /* the other two vertices, ascending                                     */
+  PetscInt *element;   /* the first tetrahedron of the face                                     */
+  PetscInt *side;      /* which of its faces it is                                              */
+  PetscInt *number;    /* tetrahedra that have the face; then its number on the boundary, or -1 */
+} Faces;
 
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
-  if (!given) PetscCall(PetscOptionsSetValue(NULL, option, NULL));
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  ierr = DMPlexCreateGmshFromFile(PETSC_COMM_SELF, path, PETSC_TRUE, dm);
-  PetscCall(PetscPopErrorHandler());
-  if (!given) PetscCall(PetscOptionsClearValue(NULL, option));
-  if (!ierr) PetscFunctionReturn(PETSC_SUCCESS);
-  *dm = NULL; /* what PETSc leaves of a mesh it could not finish cannot be destroyed */
-  PetscFunctionReturn(InputError(key,
-                                 "is a gmsh file that cannot be read (PETSc's reader: error %d)\n"
-                                 "  write it again with gmsh (formats 4.1 and 2.2 are read)",
-                                 (int)ierr));
+/* nodes of the four faces of a tetrahedron, outward by the right-hand rule: corners, then the nodes of the edges after each */
+static const int face_nodes[4][6] = {{0, 2, 1, 6, 5, 4}, {0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}};
+
+/* coordinates of the nodes of element e */
+static void ElementCoordinates(const TLEDMesh *mesh, PetscInt e, PetscReal x[])
+{
+  for (PetscInt a = 0; a < mesh->n_corners; a++)
+    for (PetscInt k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[mesh->n_corners * e + a] + k];
 }
 
-/* refuse what is not a mesh of first-order tetrahedra */
-static PetscErrorCode CheckKind(const char key[], const TLEDGmshFile *file, DM dm)
+/* number of elements of a gmsh type */
+static PetscInt CountType(const TLEDGmshFile *file, PetscInt type)
 {
-  PetscInt       dim, c, c_start, c_end;
-  DMPolytopeType type;
+  PetscInt n = 0;
+
+  for (PetscInt e = 0; e < file->n_elements; e++) n += file->type[e] == type;
+  return n;
+}
+
+/* nodes and tetrahedra, in the file's order; gmsh lists the last two edges of a quadratic tetrahedron the other way round than VTK */
+static PetscErrorCode GetCells(const char key[], const TLEDGmshFile *file, const TLEDParams *p, TLEDMesh *mesh)
+{
+  const PetscInt n_linear = CountType(file, TLED_GMSH_TET4), n_quadratic = CountType(file, TLED_GMSH_TET10);
+  const PetscInt type = n_quadratic ? TLED_GMSH_TET10 : TLED_GMSH_TET4;
+  PetscInt       n    = 0;
 
   PetscFunctionBegin;
-  if (file->n_other)
-    PetscFunctionReturn(InputError(key, "holds a %s\n  expected a mesh of first-order (4-node) tetrahedra only", file->other));
-  if (file->n_tets == 0)
+  if (n_linear && n_quadratic)
+    PetscFunctionReturn(InputError(key,
+                                   "holds %" PetscInt_FMT " tetrahedra of first order and %" PetscInt_FMT
+                                   " of second\n  expected one order for all (gmsh -order 1 or 2)",
+                                   n_linear, n_quadratic));
+  if (!n_linear && !n_quadratic)
     PetscFunctionReturn(InputError(key,
                                    "is a mesh of the wrong kind: no tetrahedra, %" PetscInt_FMT
                                    " triangles\n  expected a volume mesh (gmsh -3) with a physical volume; "
                                    "meshes/solid_from_surface.py makes one from a closed surface",
-                                   file->n_triangles));
-  if (!dm) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DMGetDimension(dm, &dim));
-  if (dim != 3)
-    PetscFunctionReturn(InputError(
-        key, "is a mesh of the wrong kind: its elements have %" PetscInt_FMT " dimensions\n  expected tetrahedra (gmsh -3)", dim));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
-  for (c = c_start; c < c_end; c++) {
-    PetscCall(DMPlexGetCellType(dm, c, &type));
-    if (type != DM_POLYTOPE_TETRAHEDRON)
-      PetscFunctionReturn(InputError(key,
-                                     "is a mesh of the wrong kind: element %" PetscInt_FMT " is a %s\n  expected tetrahedra only",
-                                     c - c_start + 1, DMPolytopeTypes[type]));
+                                   CountType(file, TLED_GMSH_TRIANGLE3) + CountType(file, TLED_GMSH_TRIANGLE6)));
+  mesh->n_nodes   = file->n_nodes;
+  mesh->n_tets    = n_linear + n_quadratic;
+  mesh->n_corners = n_quadratic ? 10 : 4;
+  PetscCall(PetscMalloc3(3 * mesh->n_nodes, &mesh->X, mesh->n_corners * mesh->n_tets, &mesh->tets, mesh->n_tets, &mesh->tag));
+  for (PetscInt k = 0; k < 3 * mesh->n_nodes; k++) mesh->X[k] = p->scale * file->X[k] + p->translate[k % 3];
+  for (PetscInt e = 0; e < file->n_elements; e++) {
+    PetscInt *corner = &mesh->tets[mesh->n_corners * n];
+    if (file->type[e] != type) continue;
+    for (PetscInt a = 0; a < mesh->n_corners; a++) corner[a] = file->corner[file->first[e] + (a < 8 ? a : 17 - a)];
+    mesh->tag[n++] = file->tag[e];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coordinates and connectivity. Plex keeps the file's corner order but for its own convention, in which a tetrahedron of positive
-   volume has its first two corners exchanged: an element inverted in the file stays so, and is found by CheckVolumes(). */
-static PetscErrorCode GetCells(const char key[], DM dm, const TLEDParams *p, TLEDMesh *mesh)
+/* Size of an element to tell whether it is good: its volume [m^3], or the smallest Jacobian over 6 of a quadratic one at the points of
+   both quadrature rules */
+static PetscReal WorstVolume(const TLEDMesh *mesh, const PetscReal x[])
 {
-  PetscInt           c, c_start, c_end, v_start, v_end, n, k, a;
-  PetscInt          *closure = NULL;
-  Vec                coordinates;
-  const PetscScalar *xyz;
+  static const int rules[2] = {TLED_T10_POINTS, TLED_T10_POINTS_FINE};
+  PetscReal        worst    = PETSC_MAX_REAL, M[9], L[4];
 
-  PetscFunctionBegin;
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
-  mesh->n_tets    = c_end - c_start;
-  mesh->n_nodes   = v_end - v_start;
-  mesh->n_corners = 4;
-  PetscCall(PetscMalloc3(3 * mesh->n_nodes, &mesh->X, 4 * mesh->n_tets, &mesh->tets, mesh->n_tets, &mesh->tag));
-  PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
-  PetscCall(VecGetLocalSize(coordinates, &n));
-  if (n != 3 * mesh->n_nodes)
-    PetscFunctionReturn(
-        InputError(key, "holds elements of second or higher order\n  expected a mesh of first-order (4-node) tetrahedra only"));
-  PetscCall(VecGetArrayRead(coordinates, &xyz));
-  for (k = 0; k < 3 * mesh->n_nodes; k++) mesh->X[k] = p->scale * PetscRealPart(xyz[k]) + p->translate[k % 3];
-  PetscCall(VecRestoreArrayRead(coordinates, &xyz));
-  for (c = c_start; c < c_end; c++) {
-    PetscInt *corner = &mesh->tets[4 * (c - c_start)];
-    PetscCall(DMPlexGetTransitiveClosure(dm, c, PETSC_TRUE, &n, &closure));
-    for (k = 0, a = 0; k < n && a < 4; k++)
-      if (closure[2 * k] >= v_start && closure[2 * k] < v_end) corner[a++] = closure[2 * k] - v_start;
-    PetscCall(DMPlexRestoreTransitiveClosure(dm, c, PETSC_TRUE, &n, &closure));
-    PetscCall(DMPlexInvertCell(DM_POLYTOPE_TETRAHEDRON, corner));
+  if (mesh->n_corners == 4) return TLEDReferenceGradients(x, M);
+  for (int r = 0; r < 2; r++) {
+    for (int q = 0; q < rules[r]; q++) {
+      (void)TLEDQuadratureT10(rules[r], q, L);
+      const PetscReal V = TLEDJacobianT10(L, x, M) / 6.0;
+      if (!(V > worst)) worst = V;
+    }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return worst;
 }
 
 /* no element without volume or turned inside out */
 static PetscErrorCode CheckVolumes(const char key[], const TLEDMesh *mesh)
 {
-  PetscInt  e, a, k, n_bad = 0, first = 0;
-  PetscReal V, V_first = 0.0, longest, l2;
+  PetscInt  n_bad = 0, first = 0;
+  PetscReal V_first = 0.0, x[3 * TLED_CORNERS_MAX];
 
   PetscFunctionBegin;
-  for (e = 0; e < mesh->n_tets; e++) {
-    PetscReal x[12], G[9];
-    for (a = 0; a < 4; a++)
-      for (k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[4 * e + a] + k];
-    V = TLEDReferenceGradients(x, G);
-    for (a = 1, longest = 0.0; a < 4; a++) {
-      l2 = PetscSqr(x[3 * a] - x[0]) + PetscSqr(x[3 * a + 1] - x[1]) + PetscSqr(x[3 * a + 2] - x[2]);
-      if (l2 > longest) longest = l2;
-    }
+  for (PetscInt e = 0; e < mesh->n_tets; e++) {
+    PetscReal longest = 0.0;
+    ElementCoordinates(mesh, e, x);
+    for (PetscInt a = 1; a < 4; a++)
+      longest = PetscMax(longest, PetscSqr(x[3 * a] - x[0]) + PetscSqr(x[3 * a + 1] - x[1]) + PetscSqr(x[3 * a + 2] - x[2]));
+    const PetscReal V = WorstVolume(mesh, x);
     if (V > 1e-12 * longest * PetscSqrtReal(longest)) continue; /* a flat element of any size: round-off of its coordinates */
     if (!n_bad++) first = e, V_first = V;
   }
   if (!n_bad) PetscFunctionReturn(PETSC_SUCCESS);
   PetscFunctionReturn(InputError(
       key,
-      "has %s element: number %" PetscInt_FMT " of the file has volume %g m^3 (%" PetscInt_FMT " of %" PetscInt_FMT
-      " elements are bad)\n  every tetrahedron needs a positive volume; mesh again with optimisation (gmsh -3 -optimize)",
-      V_first < 0.0 ? "an inverted" : "a flat", mesh->tag[first], (double)V_first, n_bad, mesh->n_tets));
+      "has %s element: number %" PetscInt_FMT " of the file has %s %g m^3 (%" PetscInt_FMT " of %" PetscInt_FMT
+      " elements are bad)\n  every tetrahedron needs a positive %s; mesh again with optimisation (gmsh -3 -optimize%s)",
+      V_first < 0.0 ? "an inverted" : "a flat", mesh->tag[first],
+      mesh->n_corners == 4 ? "volume" : "a smallest Jacobian at its integration points of", (double)(mesh->n_corners == 4 ? 1 : 6) * V_first,
+      n_bad, mesh->n_tets, mesh->n_corners == 4 ? "volume" : "Jacobian", mesh->n_corners == 4 ? "" : "_ho"));
 }
 
-/* triangles with one tetrahedron, turned so that the normal points away from its fourth corner; face_triangle[f] is the number of
-   the triangle made of face f, or -1 */
-static PetscErrorCode GetBoundary(const char key[], DM dm, TLEDMesh *mesh, PetscInt face_triangle[])
+static void Sort3(PetscInt v[3])
 {
-  PetscInt        f, f_start, f_end, v_start, v_end, c_start, n, k, a;
-  PetscInt       *closure = NULL;
-  const PetscInt *support;
+  PetscInt t;
+
+  if (v[0] > v[1]) t = v[0], v[0] = v[1], v[1] = t;
+  if (v[1] > v[2]) t = v[1], v[1] = v[2], v[2] = t;
+  if (v[0] > v[1]) t = v[0], v[0] = v[1], v[1] = t;
+}
+
+/* the entry of the face with three vertices, -1 when there is none; the vertices are sorted */
+static PetscInt FindFace(const Faces *f, PetscInt v[3])
+{
+  Sort3(v);
+  for (PetscInt k = f->first[v[0]]; k < f->first[v[0]] + f->n[v[0]]; k++)
+    if (f->rest[2 * k] == v[1] && f->rest[2 * k + 1] == v[2]) return k;
+  return -1;
+}
+
+static void FaceVertices(const TLEDMesh *mesh, PetscInt e, PetscInt side, PetscInt v[3])
+{
+  for (int a = 0; a < 3; a++) v[a] = mesh->tets[mesh->n_corners * e + face_nodes[side][a]];
+}
+
+/* what two tetrahedra with a common face must share: the nodes of its edges, and no third one has that face */
+static PetscErrorCode CheckShared(const char key[], const TLEDMesh *mesh, const Faces *f, PetscInt k, PetscInt e, PetscInt side)
+{
+  const PetscInt *other = &mesh->tets[mesh->n_corners * f->element[k]], *own = &mesh->tets[mesh->n_corners * e];
 
   PetscFunctionBegin;
-  PetscCall(DMPlexGetHeightStratum(dm, 1, &f_start, &f_end));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, NULL));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
-  for (f = f_start; f < f_end; f++) {
-    PetscCall(DMPlexGetSupportSize(dm, f, &n));
-    face_triangle[f - f_start] = n == 1 ? mesh->n_triangles++ : -1;
-    if (n <= 2) continue;
-    PetscCall(DMPlexGetSupport(dm, f, &support));
+  if (f->number[k] > 2)
     PetscFunctionReturn(
         InputError(key,
                    "has elements that overlap: %" PetscInt_FMT " tetrahedra, number %" PetscInt_FMT
                    " of the file among them, share one face\n  a face belongs to two tetrahedra, or to one at the boundary",
-                   n, mesh->tag[support[0] - c_start]));
-  }
-  PetscCall(PetscMalloc1(3 * mesh->n_triangles, &mesh->triangles));
-  for (f = f_start; f < f_end; f++) {
-    PetscInt        corner[3], opposite = -1;
-    const PetscInt *tet;
-    PetscReal       e1[3], e2[3], e3[3], normal[3];
-    if (face_triangle[f - f_start] < 0) continue;
-    PetscCall(DMPlexGetTransitiveClosure(dm, f, PETSC_TRUE, &n, &closure));
-    for (k = 0, a = 0; k < n && a < 3; k++)
-      if (closure[2 * k] >= v_start && closure[2 * k] < v_end) corner[a++] = closure[2 * k] - v_start;
-    PetscCall(DMPlexRestoreTransitiveClosure(dm, f, PETSC_TRUE, &n, &closure));
-    PetscCall(DMPlexGetSupport(dm, f, &support));
-    tet = &mesh->tets[4 * (support[0] - c_start)];
-    for (a = 0; a < 4; a++)
-      if (tet[a] != corner[0] && tet[a] != corner[1] && tet[a] != corner[2]) opposite = tet[a];
-    Sub3(&mesh->X[3 * corner[1]], &mesh->X[3 * corner[0]], e1);
-    Sub3(&mesh->X[3 * corner[2]], &mesh->X[3 * corner[0]], e2);
-    Sub3(&mesh->X[3 * opposite], &mesh->X[3 * corner[0]], e3);
-    Cross3(e1, e2, normal);
-    if (Dot3(normal, e3) > 0.0) k = corner[1], corner[1] = corner[2], corner[2] = k;
-    for (a = 0; a < 3; a++) mesh->triangles[3 * face_triangle[f - f_start] + a] = corner[a];
+                   f->number[k], mesh->tag[e]));
+  for (int a = 3; a < 6 && mesh->n_corners == 10; a++) {
+    PetscBool found = PETSC_FALSE;
+    for (int b = 3; b < 6; b++) found = (PetscBool)(found || own[face_nodes[side][a]] == other[face_nodes[f->side[k]][b]]);
+    if (!found)
+      PetscFunctionReturn(InputError(key,
+                                     "has elements that do not fit: number %" PetscInt_FMT " and %" PetscInt_FMT
+                                     " of the file share the vertices of a face, but not the nodes on its edges",
+                                     mesh->tag[f->element[k]], mesh->tag[e]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* nodes, boundary triangles and elements of one group from the label of its name */
-static PetscErrorCode GetGroup(DM dm, const PetscInt face_triangle[], const TLEDMesh *mesh, TLEDGroup *group)
+/* all faces of the tetrahedra, each once */
+static PetscErrorCode ListFaces(const char key[], const TLEDMesh *mesh, Faces *f)
 {
-  DMLabel         label;
-  IS              points, values;
-  PetscInt        i, j, k, n, n_values, n_points, n_closure, f_start, f_end, v_start, v_end, *closure = NULL;
-  const PetscInt *point, *value;
-  PetscInt        c_start, c_end, n_tets = mesh->n_tets;
-  PetscBool      *in_group, *is_triangle, *is_tet;
+  const PetscInt n = 4 * mesh->n_tets;
+  PetscInt       v[3];
 
   PetscFunctionBegin;
-  PetscCall(DMGetLabel(dm, group->name, &label));
-  PetscCall(PetscCalloc3(mesh->n_nodes, &in_group, mesh->n_triangles, &is_triangle, n_tets, &is_tet));
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &c_start, &c_end));
-  PetscCall(DMPlexGetHeightStratum(dm, 1, &f_start, &f_end));
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &v_start, &v_end));
-  if (label) {
-    PetscCall(DMLabelGetValueIS(label, &values));
-    PetscCall(ISGetLocalSize(values, &n_values));
-    PetscCall(ISGetIndices(values, &value));
-    for (i = 0; i < n_values; i++) {
-      PetscCall(DMLabelGetStratumIS(label, value[i], &points));
-      PetscCall(ISGetLocalSize(points, &n_points));
-      PetscCall(ISGetIndices(points, &point));
-      for (j = 0; j < n_points; j++) {
-        if (point[j] >= c_start && point[j] < c_end) is_tet[point[j] - c_start] = PETSC_TRUE;
-        if (point[j] >= f_start && point[j] < f_end && face_triangle[point[j] - f_start] >= 0)
-          is_triangle[face_triangle[point[j] - f_start]] = PETSC_TRUE;
-        PetscCall(DMPlexGetTransitiveClosure(dm, point[j], PETSC_TRUE, &n_closure, &closure));
-        for (k = 0; k < n_closure; k++)
-          if (closure[2 * k] >= v_start && closure[2 * k] < v_end) in_group[closure[2 * k] - v_start] = PETSC_TRUE;
-        PetscCall(DMPlexRestoreTransitiveClosure(dm, point[j], PETSC_TRUE, &n_closure, &closure));
-      }
-      PetscCall(ISRestoreIndices(points, &point));
-      PetscCall(ISDestroy(&points));
-    }
-    PetscCall(ISRestoreIndices(values, &value));
-    PetscCall(ISDestroy(&values));
+  PetscCall(PetscCalloc6(mesh->n_nodes + 1, &f->first, mesh->n_nodes, &f->n, 2 * n, &f->rest, n, &f->element, n, &f->side, n, &f->number));
+  for (PetscInt i = 0; i < n; i++) {
+    FaceVertices(mesh, i / 4, i % 4, v);
+    f->first[PetscMin(v[0], PetscMin(v[1], v[2])) + 1]++;
   }
-  for (i = 0; i < n_tets; i++) group->n_tets += is_tet[i];
-  PetscCall(PetscMalloc1(group->n_tets, &group->tets));
-  for (i = 0, n = 0; i < n_tets; i++)
-    if (is_tet[i]) group->tets[n++] = i;
-  for (i = 0; i < mesh->n_nodes; i++) group->n_nodes += in_group[i];
-  for (i = 0; i < mesh->n_triangles; i++) group->n_triangles += group->dim == 2 && is_triangle[i];
-  PetscCall(PetscMalloc2(group->n_nodes, &group->nodes, group->n_triangles, &group->triangles));
-  for (i = 0, n = 0; i < mesh->n_nodes; i++)
+  for (PetscInt a = 0; a < mesh->n_nodes; a++) f->first[a + 1] += f->first[a];
+  for (PetscInt i = 0; i < n; i++) {
+    FaceVertices(mesh, i / 4, i % 4, v);
+    PetscInt k = FindFace(f, v);
+    if (k < 0) {
+      k          = f->first[v[0]] + f->n[v[0]]++;
+      f->rest[2 * k] = v[1], f->rest[2 * k + 1] = v[2];
+      f->element[k] = i / 4, f->side[k] = i % 4;
+    }
+    f->number[k]++;
+    ByCall(CheckShared(key, mesh, f, k, i / 4, i % 4));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* the boundary: faces of one tetrahedron, in the order of the elements, and the triangles they are cut into */
+static PetscErrorCode GetBoundary(Faces *f, TLEDMesh *mesh)
+{
+  static const int cut[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  const PetscInt   n_cut = mesh->n_corners == 4 ? 1 : 4, n_nodes = mesh->n_corners == 4 ? 3 : 6;
+  PetscInt         v[3];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 4 * mesh->n_tets; i++) {
+    FaceVertices(mesh, i / 4, i % 4, v);
+    const PetscInt k = FindFace(f, v);
+    if (f->element[k] == i / 4 && f->side[k] == i % 4) f->number[k] = f->number[k] == 1 ? mesh->n_faces++ : -1;
+  }
+  mesh->n_face_nodes = n_nodes;
+  mesh->n_triangles  = n_cut * mesh->n_faces;
+  PetscCall(PetscMalloc2(n_nodes * mesh->n_faces, &mesh->faces, 3 * mesh->n_triangles, &mesh->triangles));
+  for (PetscInt i = 0; i < 4 * mesh->n_tets; i++) {
+    FaceVertices(mesh, i / 4, i % 4, v);
+    const PetscInt k = FindFace(f, v), face = f->number[k];
+    if (face < 0) continue;
+    for (PetscInt a = 0; a < n_nodes; a++) mesh->faces[n_nodes * face + a] = mesh->tets[mesh->n_corners * (i / 4) + face_nodes[i % 4][a]];
+    for (PetscInt t = 0; t < n_cut; t++)
+      for (PetscInt a = 0; a < 3; a++)
+        mesh->triangles[3 * (n_cut * face + t) + a] = mesh->faces[n_nodes * face + (n_cut == 1 ? a : cut[t][a])];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* nodes, tetrahedra and boundary triangles of group g */
+static PetscErrorCode GetGroup(const TLEDGmshFile *file, const Faces *f, PetscInt g, const TLEDMesh *mesh, TLEDGroup *group)
+{
+  const PetscInt n_cut = mesh->n_faces ? mesh->n_triangles / mesh->n_faces : 1;
+  PetscBool     *in_group, *is_triangle, *is_tet;
+  PetscInt       n = 0, tet = 0, v[3];
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(group->name, file->name[g], BY_NAME_MAX));
+  group->dim = file->dim[g];
+  PetscCall(PetscCalloc3(mesh->n_nodes, &in_group, mesh->n_triangles, &is_triangle, mesh->n_tets, &is_tet));
+  for (PetscInt e = 0; e < file->n_elements; e++) {
+    const PetscInt *corner = &file->corner[file->first[e]], type = file->type[e];
+    const PetscBool is_cell = (PetscBool)(type == TLED_GMSH_TET4 || type == TLED_GMSH_TET10);
+    tet += is_cell;
+    if (!(file->groups[e] >> g & 1)) continue;
+    for (PetscInt a = 0; a < file->first[e + 1] - file->first[e]; a++) in_group[corner[a]] = PETSC_TRUE;
+    if (is_cell) is_tet[tet - 1] = PETSC_TRUE;
+    if (type != TLED_GMSH_TRIANGLE3 && type != TLED_GMSH_TRIANGLE6) continue;
+    for (int a = 0; a < 3; a++) v[a] = corner[a];
+    const PetscInt k = FindFace(f, v);
+    for (PetscInt t = 0; t < n_cut && k >= 0 && f->number[k] >= 0; t++) is_triangle[n_cut * f->number[k] + t] = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) group->n_nodes += in_group[i];
+  for (PetscInt i = 0; i < mesh->n_triangles; i++) group->n_triangles += is_triangle[i];
+  for (PetscInt i = 0; i < mesh->n_tets; i++) group->n_tets += is_tet[i];
+  PetscCall(PetscMalloc3(group->n_nodes, &group->nodes, group->n_triangles, &group->triangles, group->n_tets, &group->tets));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++)
     if (in_group[i]) group->nodes[n++] = i;
-  for (i = 0, n = 0; i < mesh->n_triangles && group->dim == 2; i++)
+  n = 0;
+  for (PetscInt i = 0; i < mesh->n_triangles; i++)
     if (is_triangle[i]) group->triangles[n++] = i;
+  n = 0;
+  for (PetscInt i = 0; i < mesh->n_tets; i++)
+    if (is_tet[i]) group->tets[n++] = i;
   PetscCall(PetscFree3(in_group, is_triangle, is_tet));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ConvertPlex(DM dm, const char key[], const TLEDGmshFile *file, const TLEDParams *params, TLEDMesh *mesh)
+static PetscErrorCode Convert(const char key[], const TLEDGmshFile *file, const TLEDParams *params, TLEDMesh *mesh)
 {
-  PetscInt       e, g, f_start, f_end, *face_triangle;
+  Faces          faces = {0};
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
-  ByCall(CheckKind(key, file, dm));
-  ByCall(GetCells(key, dm, params, mesh));
-  for (e = 0; e < mesh->n_tets; e++) mesh->tag[e] = file->n_tets == mesh->n_tets ? file->tag[e] : e + 1;
+  ByCall(GetCells(key, file, params, mesh));
   ByCall(CheckVolumes(key, mesh));
-  PetscCall(DMPlexGetHeightStratum(dm, 1, &f_start, &f_end));
-  PetscCall(PetscMalloc1(f_end - f_start, &face_triangle));
-  ierr = GetBoundary(key, dm, mesh, face_triangle);
-  if (ierr) PetscCall(PetscFree(face_triangle));
-  ByCall(ierr);
-  mesh->n_groups = file->n_groups;
-  PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
-  for (g = 0; g < mesh->n_groups; g++) {
-    PetscCall(PetscStrncpy(mesh->groups[g].name, file->name[g], BY_NAME_MAX));
-    mesh->groups[g].dim = file->dim[g];
-    PetscCall(GetGroup(dm, face_triangle, mesh, &mesh->groups[g]));
+  ierr = ListFaces(key, mesh, &faces);
+  if (!ierr) {
+    PetscCall(GetBoundary(&faces, mesh));
+    mesh->n_groups = file->n_groups;
+    PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
+    for (PetscInt g = 0; g < mesh->n_groups; g++) PetscCall(GetGroup(file, &faces, g, mesh, &mesh->groups[g]));
   }
-  PetscCall(PetscFree(face_triangle));
+  PetscCall(PetscFree6(faces.first, faces.n, faces.rest, faces.element, faces.side, faces.number));
+  ByCall(ierr);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -256,22 +280,18 @@ static PetscErrorCode ConvertPlex(DM dm, const char key[], const TLEDGmshFile *f
   Output Parameter:
 . mesh - nodes and elements in the file's order; TLEDMeshDestroy_Private() frees it, also after an error
 
-  Errors: BY_ERR_INPUT, reported with the file, element and volume: no file, not gmsh, broken, no tetrahedra, second-order elements,
-  inverted or flat elements
+  Errors: BY_ERR_INPUT, reported with the file, element and volume: no file, not gmsh, broken, no tetrahedra, two orders, inverted, flat
+  or overlapping elements
 */
 PetscErrorCode TLEDMeshRead_Private(const char key[], const TLEDParams *params, TLEDMesh *mesh)
 {
   TLEDGmshFile   file;
-  DM             dm = NULL;
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(mesh, sizeof *mesh));
   ierr = TLEDGmshRead_Private(key, params->mesh, &file);
-  if (!ierr) ierr = CheckKind(key, &file, NULL);
-  if (!ierr) ierr = ReadPlex(key, params->mesh, &dm);
-  if (!ierr) ierr = ConvertPlex(dm, key, &file, params, mesh);
-  PetscCall(DMDestroy(&dm));
+  if (!ierr) ierr = Convert(key, &file, params, mesh);
   PetscCall(TLEDGmshDestroy_Private(&file));
   ByCall(ierr);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -282,13 +302,11 @@ PetscErrorCode TLEDMeshDestroy_Private(TLEDMesh *mesh)
   PetscInt g;
 
   PetscFunctionBegin;
-  for (g = 0; g < mesh->n_groups && mesh->groups; g++) {
-    PetscCall(PetscFree2(mesh->groups[g].nodes, mesh->groups[g].triangles));
-    PetscCall(PetscFree(mesh->groups[g].tets));
-  }
+  for (g = 0; g < mesh->n_groups && mesh->groups; g++)
+    PetscCall(PetscFree3(mesh->groups[g].nodes, mesh->groups[g].triangles, mesh->groups[g].tets));
   PetscCall(PetscFree(mesh->material));
   PetscCall(PetscFree(mesh->groups));
-  PetscCall(PetscFree(mesh->triangles));
+  PetscCall(PetscFree2(mesh->faces, mesh->triangles));
   PetscCall(PetscFree3(mesh->X, mesh->tets, mesh->tag));
   PetscCall(PetscMemzero(mesh, sizeof *mesh));
   PetscFunctionReturn(PETSC_SUCCESS);

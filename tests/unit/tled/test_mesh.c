@@ -156,10 +156,16 @@ static void WrongKinds_AreRefused(void **state)
   REFUSED(Body(path, &p), "is a mesh of the wrong kind", "no tetrahedra, 1 triangles", "solid_from_surface.py");
   f = fopen(path, "w");
   fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n");
-  for (int a = 1; a <= 10; a++) fprintf(f, "%d %d %d %d\n", a, a, a * a, a * a * a);
-  fprintf(f, "$EndNodes\n$Elements\n1\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+  for (int k = 1; k <= 10; k++) fprintf(f, "%d %d %d %d\n", k, k, k * k, k * k * k);
+  fprintf(f, "$EndNodes\n$Elements\n1\n1 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n");
   fclose(f);
-  REFUSED(Body(path, &p), "second-order (10-node) tetrahedron", "expected a mesh of first-order");
+  REFUSED(Body(path, &p), "holds an element of another kind: 8-node hexahedron", "expected a mesh of tetrahedra of first or second order");
+  f = fopen(path, "w");
+  fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n");
+  for (int k = 1; k <= 10; k++) fprintf(f, "%d %d %d %d\n", k, k, k * k, k * k * k);
+  fprintf(f, "$EndNodes\n$Elements\n2\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n2 4 2 1 1 1 2 3 4\n$EndElements\n");
+  fclose(f);
+  REFUSED(Body(path, &p), "holds 1 tetrahedra of first order and 1 of second", "expected one order");
   unlink(path);
 }
 
