@@ -5,6 +5,7 @@ byssus_test(unit/tled/test_static base tled)
 byssus_test(unit/tled/test_time base tled)
 byssus_test(unit/tled/test_critical base tled)
 byssus_test(unit/tled/test_mesh base tled)
+byssus_test(unit/tled/test_t10 base tled)
 
 # in time, against another code; prints the table of docs/verification/solid-slice.md
 byssus_test(convergence/test_tled_reference base tled)
