@@ -1,71 +1,13 @@
 /* tled_openmp.c - the element loops on the CPU: blocks over threads, packs of elements over vector lanes. No formula here.
 
    Every function may be called by all threads of a parallel region (the work is shared, with a barrier at the end) or outside. */
-#include "tled/tled_impl.h"
+#include "tled/tled_lanes.h"
 #include <omp.h>
-
-#define L TLED_LANES
-
-/* inlined without question: a vector loop has no calls, and constants handed in (the law) fold away */
-#define INLINE static inline __attribute__((always_inline))
-
-/* x, y, z of a node and a fourth number, as one vector register: corners are loaded and forces added a node at a time, and turned
-   into lanes by transposition, which is cheaper than gathers of single numbers */
-typedef double Row __attribute__((vector_size(32)));
-
-/* what a block works on: its nodes' values and forces */
-typedef struct {
-  Row    u[TLED_BLOCK_NODES];
-  Row    f[TLED_BLOCK_NODES];
-  double value[2][TLED_BLOCK_NODES];
-} Scratch;
 
 /* values of a pack of elements */
 typedef struct {
   double H[9][L], jm1[L], ln_J[L];
 } __attribute__((aligned(64))) Pack;
-
-static void LoadNodes(const TLEDBlocks *b, int block, const double u[], Scratch *s)
-{
-  const int *node = b->node + b->node_offset[block], n = b->node_offset[block + 1] - b->node_offset[block];
-
-  for (int a = 0; a < n; a++) s->u[a] = (Row){u[3 * node[a]], u[3 * node[a] + 1], u[3 * node[a] + 2], 0.0};
-}
-
-/* how many lanes are broken: det F <= 0 or NaN */
-INLINE int CountBroken(const double jm1[])
-{
-  int broken = 0;
-
-  for (int l = 0; l < L; l++) broken += !(jm1[l] > -1.0);
-  return broken;
-}
-
-/* x, y, z of four rows as lanes */
-INLINE void RowsToLanes(Row r0, Row r1, Row r2, Row r3, double x[], double y[], double z[])
-{
-  typedef long long Pick __attribute__((vector_size(32)));
-  const Row         xz01 = __builtin_shuffle(r0, r1, (Pick){0, 4, 2, 6}), y01 = __builtin_shuffle(r0, r1, (Pick){1, 5, 3, 7});
-  const Row         xz23 = __builtin_shuffle(r2, r3, (Pick){0, 4, 2, 6}), y23 = __builtin_shuffle(r2, r3, (Pick){1, 5, 3, 7});
-
-  *(Row *)x = __builtin_shuffle(xz01, xz23, (Pick){0, 1, 4, 5});
-  *(Row *)y = __builtin_shuffle(y01, y23, (Pick){0, 1, 4, 5});
-  *(Row *)z = __builtin_shuffle(xz01, xz23, (Pick){2, 3, 6, 7});
-}
-
-/* add x, y, z of four lanes to four rows; one after the other, since they may be the same row */
-INLINE void AddLanesToRows(const double x[], const double y[], const double z[], Row *r0, Row *r1, Row *r2, Row *r3)
-{
-  typedef long long Pick __attribute__((vector_size(32)));
-  const Row         X = *(const Row *)x, Y = *(const Row *)y, Z = *(const Row *)z, O = {0.0, 0.0, 0.0, 0.0};
-  const Row         xy02 = __builtin_shuffle(X, Y, (Pick){0, 4, 2, 6}), xy13 = __builtin_shuffle(X, Y, (Pick){1, 5, 3, 7});
-  const Row         z02 = __builtin_shuffle(Z, O, (Pick){0, 4, 2, 6}), z13 = __builtin_shuffle(Z, O, (Pick){1, 5, 3, 7});
-
-  *r0 += __builtin_shuffle(xy02, z02, (Pick){0, 1, 4, 5});
-  *r1 += __builtin_shuffle(xy13, z13, (Pick){0, 1, 4, 5});
-  *r2 += __builtin_shuffle(xy02, z02, (Pick){2, 3, 6, 7});
-  *r3 += __builtin_shuffle(xy13, z13, (Pick){2, 3, 6, 7});
-}
 
 /* u_a - u_0 of each lane for the corners a = 1, 2, 3, d[3 (a - 1) + i] */
 INLINE void PackDifferences(const int local[], const Scratch *s, double d[9][L])
@@ -107,20 +49,6 @@ INLINE int PackGradients(const int local[], const double G[], const Scratch *s, 
   return CountBroken(p->jm1);
 }
 
-/* ln J of each lane: a series for all at once where it holds, as it nearly always does */
-static void PackLogarithms(const double jm1[], double ln_J[])
-{
-  int far = 0;
-
-  for (int l = 0; l < L; l++) far += !(fabs(jm1[l]) <= TLED_LOG_REACH);
-  if (!far) {
-#pragma GCC ivdep
-    for (int l = 0; l < L; l++) ln_J[l] = TLEDLogSeries(jm1[l]);
-  } else {
-    for (int l = 0; l < L; l++) ln_J[l] = TLEDLogJacobian(jm1[l]);
-  }
-}
-
 /* nodal forces of each lane, f[3 a + i] of the nodes a = 1, 2, 3 in rows 3 to 11, of node 0 in rows 0 to 2 */
 INLINE void StoreForces(const double P[9], const double G[], const double V0[], int l, double f[12][L])
 {
@@ -156,14 +84,6 @@ INLINE void LaneGradient(const Pack *p, int l, double H[9])
   H[8] = p->H[8][l];
 }
 
-/* Unit vector along the fibres of a lane. */
-INLINE void LaneFibre(const double fibre[], int l, double a[3])
-{
-  a[0] = fibre ? fibre[l] : 0.0;
-  a[1] = fibre ? fibre[L + l] : 0.0;
-  a[2] = fibre ? fibre[2 * L + l] : 0.0;
-}
-
 INLINE void PackForces(int law, const TLEDLaw *material, const Pack *p, const double fibre[], const double G[], const double V0[],
                        double f[12][L])
 {
@@ -189,22 +109,6 @@ INLINE void AddForces(const int local[], double f[12][L], Scratch *s)
       AddLanesToRows(&f[3 * a][l], &f[3 * a + 1][l], &f[3 * a + 2][l], &s->f[n[0]], &s->f[n[1]], &s->f[n[2]], &s->f[n[3]]);
     }
   }
-}
-
-/* partial sums of the block's nodes to its slots, three numbers a node */
-static void StoreBlock(const TLEDBlocks *b, int block, const Scratch *s, double partial[])
-{
-  const int first = b->node_offset[block], n = b->node_offset[block + 1] - first;
-
-  for (int a = 0; a < n; a++)
-    for (int k = 0; k < 3; k++) partial[3 * (first + a) + k] = s->f[a][k];
-}
-
-static void ClearForces(const TLEDBlocks *b, int block, Scratch *s)
-{
-  const int n = b->node_offset[block + 1] - b->node_offset[block];
-
-  for (int a = 0; a < n; a++) s->f[a] = (Row){0.0, 0.0, 0.0, 0.0};
 }
 
 /* forces of all four-node tetrahedra */
