@@ -30,7 +30,8 @@ td:first-child { color: var(--muted); width: 40%; }
 pre { background: var(--card); border: 1px solid var(--line); border-radius: 10px; padding: 1rem; overflow-x: auto; font-size: .85rem; line-height: 1.45; }
 """
 
-TITLES = {"final.png": "Last state", "moments.png": "Four moments", "probes.png": "Probes", "energies.png": "Energies", "solver.png": "Solver", "compare.png": "Runs beside each other"}
+TITLES = {"final.png": "Last state", "moments.png": "Four moments", "probes.png": "Probes", "energies.png": "Energies", "solver.png": "Solver", "compare.png": "Runs beside each other",
+          "verification.png": "Explicit against implicit"}
 
 
 def flatten(value, prefix=""):

@@ -2,7 +2,7 @@
 """plot.py - pictures (PNG) and one self-contained HTML page of runs: plot.py RUN... [-width PIXELS]
 
 Writes RUN/plots/final.png, moments.png, probes.png, energies.png, solver.png (those for which the run has data) and index.html; of several
-runs also compare.png, into each. Needs no display. Status 0 done, 1 a picture could not be written, 2 a directory is not a run or is damaged.
+runs also compare.png, into each; of `byssus verify` verification.png. Needs no display. Status 0 done, 1 a picture could not be written, 2 a directory is not a run or is damaged.
 """
 
 import os
@@ -16,6 +16,7 @@ try:
     import charts
     import page
     import picture
+    import verification
 except ImportError as error:
     sys.exit(f"byssus plot: {error} (Debian: apt install python3-numpy python3-h5py python3-matplotlib python3-yaml)")
 
@@ -34,6 +35,9 @@ def draw_run(run, width):
         if draw(*arguments, path) is not False:
             done.append(path)
 
+    if verification.is_verification(run):
+        add("verification.png", verification.draw_verification, run)
+        return done
     if len(run.times()):
         view = picture.View(run)
         add("final.png", picture.draw_final, run, view, width)

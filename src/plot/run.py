@@ -107,20 +107,27 @@ class Series:
         return unit.decode() if isinstance(unit, bytes) else str(unit)
 
     def cells(self):
-        """of the first topology, n x 3 or n x 4"""
-        where, nodes = ("Connectivity", 4) if self.kind == "tetrahedra" else ("Polygons/Connectivity", 3)
-        counts = self.group["NumberOfCells" if nodes == 4 else "Polygons/NumberOfCells"]
-        return self.group[where][: int(counts[0]) * nodes].reshape(-1, nodes)
+        """of the first topology: triangles n x 3, tetrahedra n x 4 or, of second order, n x 10"""
+        where = "" if self.kind == "tetrahedra" else "Polygons/"
+        n = int(self.group[where + "NumberOfCells"][0])
+        nodes = 3 if where else int(self.group["NumberOfConnectivityIds"][0]) // max(n, 1)
+        return self.group[where + "Connectivity"][: n * nodes].reshape(-1, nodes)
 
     def triangles(self):
-        """the surface: the triangles themselves, or the faces that belong to one tetrahedron only, seen from outside"""
+        """the surface: the triangles themselves, or the faces that belong to one tetrahedron only, seen from outside; a quadratic face is four"""
         cells = self.cells()
         if self.kind == "triangles":
             return cells
         faces = cells[:, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]].reshape(-1, 3)
         order = np.sort(faces, axis=1)
         _, index, count = np.unique(order, axis=0, return_index=True, return_counts=True)
-        return faces[np.sort(index[count == 1])]
+        outer = np.sort(index[count == 1])
+        if cells.shape[1] == 4:
+            return faces[outer]
+        # nodes in the middle of the edges 01 12 02 03 13 23 are 4 ... 9; of each face those behind its first, second and third corner
+        middle = cells[:, [[6, 5, 4], [4, 8, 7], [5, 9, 8], [7, 9, 6]]].reshape(-1, 3)[outer]
+        (a, b, c), (ab, bc, ca) = faces[outer].T, middle.T
+        return np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
 
     def step_at(self, time):
         return int(np.argmin(np.abs(self.times - time)))

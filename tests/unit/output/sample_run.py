@@ -115,6 +115,29 @@ def make_run(directory, n_times=7, spacing=0.012):
         file.write(SCENE.replace("SPACING", str(spacing)))
 
 
+def make_verification(directory):
+    """what `byssus verify` writes of one body: static, dynamic and modes"""
+    os.makedirs(directory, exist_ok=True)
+    rest, tets = box_of_tetrahedra((12, 2, 2), (0.0, 0.0, 0.0), (1.0, 0.1, 0.1))
+    u = np.stack([-0.1 * rest[:, 0] ** 2, 0 * rest[:, 0], -0.4 * rest[:, 0] ** 2], axis=1)
+    difference = 1e-7 * u * rest[:, [0]]
+    for kind in ("static", "dynamic"):
+        write_series(os.path.join(directory, f"beam_{kind}_explicit.vtkhdf"), [0.5], [(rest + u, {"displacement": u, "difference": difference})], tets, "UnstructuredGrid")
+        write_series(os.path.join(directory, f"beam_{kind}_implicit.vtkhdf"), [0.5], [(rest + u, {"displacement": u})], tets, "UnstructuredGrid")
+    times = np.linspace(0, 0.5, 21)[1:]
+    tip = [[-0.1 * t, 0.0, -0.4 * t] for t in times]
+    write_table(os.path.join(directory, "beam_dynamic.csv"), ["time [s]", *(f"{s}_{c} [m]" for s in ("implicit", "explicit") for c in "xyz"), '"difference, step 1.000e-04 s [m]"'],
+                [[t, *x, *x, 1e-6] for t, x in zip(times, tip)])
+    ring = np.arange(400) * 0.02
+    write_table(os.path.join(directory, "beam_ringdown.csv"), ["time [s]", "node_x [m]", "node_y [m]", "node_z [m]", "mode_1 [kg^0.5 m]"],
+                [[t, 0.0, np.sin(2 * np.pi * 1.15 * t), 0.2 * np.sin(2 * np.pi * 6.8 * t), 1.0] for t in ring])
+    run = lambda step, d: {"step": step, "steps": int(0.5 / step), "difference_max": d, "difference_rms": d / 3, "energy_drift": 1e-6, "seconds": 0.1}
+    body = {"nodes": len(rest), "static": {"difference_max": 1e-7}, "dynamic": {"order": 2.0, "implicit": run(1e-4, 1e-8), "explicit_1": run(2e-4, 4e-5), "explicit_2": run(1e-4, 1e-5)},
+            "modes": {"1": {"eigenvalue": 1.15, "ringing": 1.15}, "2": {"eigenvalue": 6.8, "ringing": 6.8}, "tolerance": 1e-3}}
+    with open(os.path.join(directory, "summary.json"), "w", encoding="utf-8") as file:
+        json.dump({"command": "verify", "status": "passed", "bodies": {"beam": body}}, file)
+
+
 def write_table(path, headers, rows):
     with open(path, "w", encoding="utf-8") as file:
         file.write(",".join(headers) + "\n")

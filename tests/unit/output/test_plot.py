@@ -48,6 +48,15 @@ class Plot(unittest.TestCase):
         corner = image[:4, :4].reshape(-1, 3)
         self.assertGreater(np.mean(np.any(np.abs(image - corner.mean(axis=0)) > 0.1, axis=2)), 0.02, path)
 
+    def test_verification(self):
+        run = os.path.join(self.folder.name, "verification")
+        sample_run.make_verification(run)
+        result = plot(run)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        plots = os.path.join(run, "plots")
+        self.assertEqual(sorted(os.listdir(plots)), ["index.html", "verification.png"])
+        self.assert_shows_something(os.path.join(plots, "verification.png"))
+
     def test_pictures_and_page(self):
         result = plot(self.good)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
