@@ -62,8 +62,8 @@ PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params)
 }
 
 /*@
-  TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys), and the materials that the key `materials`
-  names, -<name>_<material>_<key> (TLEDMaterialKeys)
+  TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys), and of the materials and supports that they
+  name, -<name>_<material>_<key> (TLEDMaterialKeys), -<name>_<constraint>_<key> (TLEDConstraintKeys)
 @*/
 PetscErrorCode TLEDSetFromOptions(TLED tled)
 {
@@ -80,6 +80,7 @@ PetscErrorCode TLEDSetFromOptions(TLED tled)
     ByCall(KeysSetFromOptions(TLEDMaterialKeys, full, &material));
     PetscCall(TLEDAddMaterial(tled, names->name[i], &material));
   }
+  PetscCall(TLEDConstraintsFromOptions_Private(tled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,29 +89,6 @@ PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3])
 {
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(tled->gravity, g, 3));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* marks of the nodes of the groups in `names` */
-static PetscErrorCode MarkNodes(TLED tled, const char key[], const Names *names, signed char motion)
-{
-  const TLEDGroup *group;
-  char             full[2 * BY_NAME_MAX];
-
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(full, sizeof full, "%s.%s", ((PetscObject)tled)->name, key));
-  for (PetscInt i = 0; i < names->n; i++) {
-    ByCall(TLEDMeshNeedGroup_Private(&tled->mesh, tled->params.mesh, full, names->name[i], 0, &group));
-    for (PetscInt k = 0; k < group->n_nodes; k++) {
-      signed char *mark = &tled->motion[group->nodes[k]];
-      if (*mark && *mark != motion)
-        PetscFunctionReturn(InputError(full,
-                                       "names the group %s, which shares nodes with a group of the other of fixed and prescribed\n "
-                                       " a node can only be held or moved",
-                                       names->name[i]));
-      *mark = motion;
-    }
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,7 +157,7 @@ static PetscErrorCode SetUpLoops(TLED tled)
 static PetscErrorCode CreateVectors(TLED tled)
 {
   const PetscInt n = 3 * tled->mesh.n_nodes, n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
-  PetscReal     *v;
+  PetscReal     *u, *v;
 
   PetscFunctionBegin;
   PetscCall(VecCreate(PetscObjectComm((PetscObject)tled), &tled->u));
@@ -194,12 +172,14 @@ static PetscErrorCode CreateVectors(TLED tled)
   PetscCall(PetscMalloc3(5 * n, &tled->krylov, 4 * n, &tled->saved, n_chunks * TLED_SUMS, &tled->sums));
   PetscCall(PetscArrayzero(tled->mode, n));
   PetscCall(PetscArrayzero(tled->sums, n_chunks * TLED_SUMS));
+  PetscCall(VecGetArrayWrite(tled->u, &u));
   PetscCall(VecGetArrayWrite(tled->v, &v));
-  for (PetscInt k = 0; k < n; k++)
-    v[k] = tled->motion[k / 3] == TLED_FREE         ? tled->params.velocity[k % 3]
-           : tled->motion[k / 3] == TLED_PRESCRIBED ? tled->params.prescribed_velocity[k % 3]
-                                                    : 0.0;
+  PetscCall(TLEDPrescribed_Private(tled, 0.0, u, tled->trial, NULL));
+  for (PetscInt k = 0; k < n; k++) v[k] = tled->params.velocity[k % 3];
+  PetscCall(TLEDProject_Private(tled, v));
+  for (PetscInt k = 0; k < n; k++) v[k] += tled->trial[k];
   PetscCall(VecRestoreArrayWrite(tled->v, &v));
+  PetscCall(VecRestoreArrayWrite(tled->u, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,15 +206,9 @@ PetscErrorCode TLEDSetUp(TLED tled)
   PetscCall(TLEDElementPick_Private(tled));
   PetscCall(TLEDBlocksCreate_Private(&tled->mesh, 1, &tled->blocks));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
-  ByCall(MarkNodes(tled, "fixed", &tled->params.fixed, TLED_FIXED));
-  ByCall(MarkNodes(tled, "prescribed", &tled->params.prescribed, TLED_PRESCRIBED));
+  ByCall(TLEDConstraintsSetUp_Private(tled));
   ByCall(PickWetted(tled));
-  tled->is_free = PETSC_TRUE;
-  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
-    if (tled->motion[a] == TLED_FREE) continue;
-    tled->constrained[a] = PETSC_TRUE;
-    tled->is_free        = PETSC_FALSE;
-  }
+  tled->is_free = (PetscBool)(tled->constraints.n_held == 0);
   PetscCall(LumpMass(tled));
   PetscCall(SetUpLoops(tled));
   PetscCall(CreateVectors(tled));
@@ -265,6 +239,13 @@ PetscErrorCode TLEDView(TLED tled, PetscViewer viewer)
     PetscCall(KeysView(TLEDMaterialKeys, &tled->materials[k], viewer));
     PetscCall(PetscViewerASCIIPopTab(viewer));
   }
+  for (PetscInt i = 0; i < tled->constraints.n; i++) {
+    if (tled->constraints.item[i].shorthand) continue;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "constraint %s:\n", tled->constraints.item[i].key));
+    PetscCall(PetscViewerASCIIPushTab(viewer));
+    PetscCall(KeysView(TLEDConstraintKeys, &tled->constraints.item[i].params, viewer));
+    PetscCall(PetscViewerASCIIPopTab(viewer));
+  }
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,6 +267,7 @@ PetscErrorCode TLEDDestroy(TLED *tled)
   PetscCall(PetscFree(t->wetted));
   PetscCall(PetscFree(t->mass));
   PetscCall(PetscFree2(t->motion, t->constrained));
+  PetscCall(TLEDConstraintsDestroy_Private(&t->constraints));
   PetscCall(VecDestroy(&t->u));
   PetscCall(VecDestroy(&t->v));
   PetscCall(VecDestroy(&t->f));

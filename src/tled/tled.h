@@ -2,6 +2,7 @@
 #ifndef BY_TLED_H
 #define BY_TLED_H
 
+#include "course.h"
 #include "keys.h"
 #include <petscmat.h>
 
@@ -32,11 +33,26 @@ typedef struct {
   PetscReal prescribed_velocity[3];   /* of the groups in `prescribed` [m/s]                                 */
   Names     fixed;                    /* physical groups held                                                */
   Names     prescribed;               /* physical groups moved                                               */
+  Names     constraints;              /* supports, a section each (TLEDConstraintParams)                     */
   Names     wetted;                   /* surface groups in contact with fluid; empty = whole boundary        */
   int       element;                  /* TLEDElement; auto = anp above nu 0.4, else t4                        */
 } TLEDParams;
 
-BY_EXTERN const Key TLEDKeys[], TLEDMaterialKeys[];
+typedef enum { TLED_CONSTRAINT_FIXED, TLED_CONSTRAINT_SYMMETRY, TLED_CONSTRAINT_MOTION } TLEDConstraintKind;
+
+/* A support: the section `<body>.<name>` for each name in the body's key `constraints`. */
+typedef struct {
+  int          kind;           /* TLEDConstraintKind                                                 */
+  Names        groups;         /* physical groups                                                    */
+  Names        components;     /* x, y, z; none: all                                                 */
+  PetscReal    translation[3]; /* [m], times the course                                              */
+  PetscReal    angle;          /* [deg], times the course                                            */
+  PetscReal    axis[3];        /* of the rotation, any length                                        */
+  PetscReal    point[3];       /* of the axis [m]                                                    */
+  CourseParams course;
+} TLEDConstraintParams;
+
+BY_EXTERN const Key TLEDKeys[], TLEDMaterialKeys[], TLEDConstraintKeys[];
 
 /* life: Create -> GetParams/SetFromOptions (options prefix "<body>_") -> SetGravity -> SetUp -> Advance -> Destroy.
    SetUp reads the mesh through DMPlex; user errors (missing mesh, no such group, not tetrahedra, inverted element) are
@@ -47,6 +63,8 @@ BY_EXTERN PetscErrorCode TLEDSetFromOptions(TLED tled);
 /* one more material, for the physical volumes that it names; before TLEDSetUp(). SetFromOptions does it for each name in `materials`,
    with the options -<body>_<name>_<key>. */
 BY_EXTERN PetscErrorCode TLEDAddMaterial(TLED tled, const char name[], const TLEDMaterialParams *params);
+/* a support, before SetUp, beside those that SetFromOptions finds */
+BY_EXTERN PetscErrorCode TLEDAddConstraint(TLED tled, const char name[], const TLEDConstraintParams *params);
 BY_EXTERN PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3]);
 BY_EXTERN PetscErrorCode TLEDSetUp(TLED tled);
 BY_EXTERN PetscErrorCode TLEDView(TLED tled, PetscViewer viewer);
@@ -62,7 +80,12 @@ BY_EXTERN PetscErrorCode TLEDGetSurface(TLED tled, PetscBool wetted_only, PetscI
 BY_EXTERN PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n, const PetscInt *nodes[]);
 BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
 BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* no fixed or prescribed node        */
-BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]); /* n_nodes             */
+/* n_nodes: which nodes are not entirely free: held in some direction, or moved */
+BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]);
+/* projector of a node onto its free directions, 3 x 3 row-major, borrowed; NULL when it is entirely free */
+BY_EXTERN PetscErrorCode TLEDGetProjector(TLED tled, PetscInt node, const PetscReal **P);
+/* force [N] and moment about the origin [N m] (may be NULL) that the supports give to the nodes of a group in the current state */
+BY_EXTERN PetscErrorCode TLEDGetReaction(TLED tled, const char group[], PetscReal force[3], PetscReal moment[3]);
 
 /* state: displacement u, velocity v (at the same time level, see TLEDAdvance), external force f: PETSc Vecs of block size 3,
    owned by the TLED; change them between Advance calls only */
@@ -100,7 +123,8 @@ BY_EXTERN PetscErrorCode TLEDResponse(TLED tled, Vec u, Mat *K);
 
 typedef struct {
   PetscReal kinetic, strain, gravity_potential; /* [J]                                      */
-  PetscReal damping_loss, external_work;        /* [J] since the start                      */
+  PetscReal damping_loss, external_work;        /* [J] since the start; of f and supports   */
+  PetscReal support_work;                       /* [J] the supports' part of external_work  */
   PetscReal momentum[3], angular[3];            /* about the origin                         */
   PetscReal volume, volume_reference;           /* [m^3]                                    */
   PetscReal speed_max;                          /* [m/s]                                    */

@@ -261,13 +261,6 @@ void TLEDAssemblyAddMass_Private(TLED tled, PetscReal factor, TLEDAssembly *s)
   }
 }
 
-const PetscReal *TLEDConstraintProjector_Private(TLED tled, PetscInt node)
-{
-  static const PetscReal none[9] = {0.0};
-
-  return tled->motion[node] == TLED_FREE ? NULL : none;
-}
-
 /* value <- P value, or value P with `right`; value has `rows` rows of three */
 static void TimesProjector(const PetscReal P[9], PetscInt rows, PetscBool right, PetscReal value[])
 {

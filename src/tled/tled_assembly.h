@@ -47,7 +47,4 @@ void TLEDAssemblyProject_Private(TLED tled, PetscReal held, TLEDAssembly *assemb
 /* the values as a matrix, created when *K is NULL, else the one of an earlier call of the same kind */
 PetscErrorCode TLEDAssemblyMatrix_Private(TLED tled, TLEDAssembly *assembly, Mat *K);
 
-/* P (3 x 3) of a node, NULL when it is free */
-const PetscReal *TLEDConstraintProjector_Private(TLED tled, PetscInt node);
-
 #endif

@@ -5,7 +5,7 @@
 #define CHANGE 1e-4 /* of omega^2 in one step, at which the iteration has settled */
 #define N_CALM 3    /* that many calm steps in a row                              */
 
-/* (x, y) with the lumped mass; constrained nodes hold zeros */
+/* (x, y) with the lumped mass; held directions have zeros */
 static PetscReal MassDot(TLED tled, const PetscReal x[], const PetscReal y[])
 {
   PetscReal sum = 0.0;
@@ -34,19 +34,23 @@ static PetscErrorCode ApplyTangent(TLED tled, const PetscReal u[], const PetscRe
   ByCall(TLEDForces_Private(tled, tled->probe, y));
   for (PetscInt k = 0; k < n; k++) tled->probe[k] = u[k] - eps * x[k];
   ByCall(TLEDForces_Private(tled, tled->probe, tled->trial));
-  for (PetscInt k = 0; k < n; k++) y[k] = tled->motion[k / 3] ? 0.0 : (y[k] - tled->trial[k]) / (2.0 * eps * tled->mass[k / 3]);
+  for (PetscInt k = 0; k < n; k++) y[k] = (y[k] - tled->trial[k]) / (2.0 * eps * tled->mass[k / 3]);
+  PetscCall(TLEDProject_Private(tled, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* a start vector with a part of every mode: the same numbers on every machine (a linear congruential sequence) */
-static void StartVector(TLED tled, PetscReal x[])
+static PetscErrorCode StartVector(TLED tled, PetscReal x[])
 {
   unsigned seed = 12345u;
 
+  PetscFunctionBegin;
   for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) {
     seed = 1664525u * seed + 1013904223u;
-    x[k] = tled->motion[k / 3] ? 0.0 : (PetscReal)(seed >> 8) / 16777216.0 - 0.5;
+    x[k] = (PetscReal)(seed >> 8) / 16777216.0 - 0.5;
   }
+  PetscCall(TLEDProject_Private(tled, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Make w[k] mass-orthonormal to w[0..k-1], its image aw[k] along with it; returns 0 when nothing is left. */
@@ -119,7 +123,7 @@ PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt
   *dt                = PETSC_MAX_REAL;
   PetscReal *none[3] = {NULL, NULL, NULL};
   if (!Orthonormalise(tled, 0, w, none)) {
-    StartVector(tled, w[0]);
+    PetscCall(StartVector(tled, w[0]));
     if (!Orthonormalise(tled, 0, w, none)) goto done;
   }
   ByCall(ApplyTangent(tled, u, w[0], aw[0]));

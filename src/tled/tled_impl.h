@@ -3,6 +3,7 @@
 #define BY_TLED_IMPL_H
 
 #include "tled/tled.h"
+#include "tled/tled_constraint.h"
 #include "tled/tled_step.h"
 #include "tled/tled_element.h"
 #include <petsc/private/petscimpl.h>
@@ -117,17 +118,39 @@ typedef struct {
   double         seen[9]; /* what the law sees: H, or Hbar of the averaged one   */
   double         fibre[3];
 } TLEDPoint;
+/* A support of the scene. */
+typedef struct {
+  char                 key[2 * BY_NAME_MAX + 2]; /* section, "block.plate"; key, "block.fixed", for a shorthand */
+  PetscBool            shorthand;
+  TLEDConstraintParams params;
+  Course               course;  /* of a motion                   */
+  double               axis[3]; /* unit vector, or zero          */
+} TLEDConstraint;
+
+/* All supports, combined node by node. */
+typedef struct {
+  PetscInt        n;
+  TLEDConstraint *item;
+  TLEDMotion     *now, *next; /* n: of the moving ones, at the end of a substep and of the one after */
+  PetscInt        n_held;
+  int            *held_of;    /* n_nodes: place in `held`, -1 for a free node                        */
+  TLEDHeld       *held;       /* n_held                                                              */
+  PetscInt       *node;       /* n_held                                                              */
+  PetscBool       moves;      /* some node is moved                                                  */
+} TLEDConstraints;
 
 /* State that Advance changes; u and v apart (they are Vecs). */
 typedef struct {
   PetscReal time;          /* [s]                                                                   */
   PetscReal damping_loss;  /* by mass-proportional damping [J]                                      */
-  PetscReal external_work; /* [J]                                                                   */
+  PetscReal external_work; /* by f [J]                                                              */
+  PetscReal support_work;  /* by the supports [J]                                                   */
   PetscReal internal_work; /* by the internal forces including stiffness damping [J]; only with it  */
   PetscReal moment[3];     /* of the external forces in the last Advance, about the origin [N m s]; free bodies only */
   PetscReal critical;      /* critical step [s]; 0 = not known                                      */
   PetscReal stretch[2];    /* smallest det F and largest |F|^2 when it was computed                 */
   PetscReal since, look;   /* substeps taken since; how many when the deformation is looked at next  */
+  PetscReal is_static;     /* 1: u is a static solution, in which supports give no inertia (Advance: 0) */
 } TLEDState;
 
 struct _p_TLED {
@@ -141,7 +164,8 @@ struct _p_TLED {
   PetscReal   *mass;           /* lumped, n_nodes [kg]                                        */
   PetscReal    volume;         /* reference [m^3]                                             */
   PetscBool   *constrained;    /* n_nodes                                                     */
-  signed char *motion;         /* n_nodes: 0 free, 1 fixed, 2 prescribed                      */
+  signed char *motion;         /* n_nodes: TLED_FREE, TLED_FIXED at rest, TLED_HELD any other */
+  TLEDConstraints constraints;
   PetscBool    is_free;
   TLEDBlocks   blocks;
   TLEDLoops    loops;
@@ -202,6 +226,21 @@ PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscRea
 PetscErrorCode TLEDAssemblyDestroy_Private(struct TLEDAssembly **assembly);
 /* tled_critical.c */
 PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt n_steps, PetscReal *dt);
+/* tled_constraint.c */
+PetscErrorCode TLEDConstraintsFromOptions_Private(TLED tled);
+PetscErrorCode TLEDConstraintsSetUp_Private(TLED tled);
+PetscErrorCode TLEDConstraintsDestroy_Private(TLEDConstraints *constraints);
+void           TLEDMotionsAt_Private(const TLEDConstraints *constraints, PetscReal t, TLEDMotion motions[]);
+PetscErrorCode TLEDProject_Private(TLED tled, PetscReal x[]); /* x <- P x, n_nodes x 3 */
+/* held parts of displacement, velocity, acceleration at time t, n_nodes x 3, zero elsewhere; each may be NULL */
+PetscErrorCode TLEDPrescribed_Private(TLED tled, PetscReal t, PetscReal u[], PetscReal v[], PetscReal a[]);
+const double  *TLEDConstraintProjector_Private(TLED tled, PetscInt node); /* 3 x 3; NULL: all directions are free */
+/* tled_load.c */
+/* f = f (the Vec) + m g + loads + contact at time t and displacement u, n_nodes x 3, not projected */
+PetscErrorCode TLEDExternalForces_Private(TLED tled, PetscReal t, const PetscReal u[], PetscReal f[]);
+/* add(ctx, a, b, K): the 3 x 3 blocks of -df_ext/du, row node a, column node b, of what follows the surface; may come more than once */
+typedef PetscErrorCode (*TLEDAddBlock)(void *ctx, PetscInt a, PetscInt b, const PetscReal K[9]);
+PetscErrorCode TLEDExternalTangent_Private(TLED tled, PetscReal t, const PetscReal u[], TLEDAddBlock add, void *ctx);
 /* f(u), raw arrays; returns BY_ERR_BREAKDOWN (with no message) when an element is broken */
 PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[]);
 

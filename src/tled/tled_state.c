@@ -59,11 +59,19 @@ PetscErrorCode TLEDIsFree(TLED tled, PetscBool *is_free)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ TLEDIsConstrained - which nodes are fixed or prescribed, n_nodes, borrowed @*/
+/*@ TLEDIsConstrained - which nodes are not entirely free: held in some direction, or moved; n_nodes, borrowed @*/
 PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[])
 {
   PetscFunctionBegin;
   *constrained = tled->constrained;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ TLEDGetProjector - projector of a node onto its free directions, 3 x 3 row-major, borrowed; NULL when it is entirely free @*/
+PetscErrorCode TLEDGetProjector(TLED tled, PetscInt node, const PetscReal **P)
+{
+  PetscFunctionBegin;
+  *P = TLEDConstraintProjector_Private(tled, node);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -273,7 +281,8 @@ PetscErrorCode TLEDGetStats(TLED tled, TLEDStats *s)
   PetscCall(VecRestoreArrayRead(tled->u, &u));
   s->speed_max        = PetscSqrtReal(speed2);
   s->volume_reference = tled->volume;
-  s->external_work    = tled->state.external_work;
+  s->support_work     = tled->state.support_work;
+  s->external_work    = tled->state.external_work + tled->state.support_work;
   s->damping_loss     = tled->state.damping_loss;
   if (tled->params.stiffness_damping > 0.0) s->damping_loss += tled->state.internal_work - s->strain;
   PetscFunctionReturn(PETSC_SUCCESS);

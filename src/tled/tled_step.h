@@ -10,53 +10,92 @@
 
 #include "mat3.h"
 
-enum { TLED_FREE = 0, TLED_FIXED = 1, TLED_PRESCRIBED = 2 };
+enum { TLED_FREE = 0, TLED_FIXED = 1, TLED_HELD = 2 }; /* free; at rest; held in some direction, or moved */
 /* what a step adds up: works [J] and the moment of the external forces about the origin [N m s] */
-enum { TLED_SUM_EXTERNAL = 0, TLED_SUM_DAMPING = 1, TLED_SUM_INTERNAL = 2, TLED_SUM_MOMENT = 3, TLED_SUMS = 8 };
+enum { TLED_SUM_EXTERNAL = 0, TLED_SUM_DAMPING = 1, TLED_SUM_INTERNAL = 2, TLED_SUM_MOMENT = 3, TLED_SUM_SUPPORT = 6, TLED_SUMS = 8 };
 
 typedef struct {
   double dt;           /* [s]                                                   */
   double alpha;        /* mass-proportional damping [1/s]                       */
   double gravity[3];   /* [m/s^2]                                               */
-  double velocity[3];  /* of prescribed nodes [m/s]                             */
 } TLEDStep;
 
-/* half kick and drift of one node; the works of the step's first half are added to sum */
-BY_HD void TLEDStepOpen(const TLEDStep *s, int motion, double m, const double f_int[3], const double f_ext[3], double u[3],
-                        double v[3], double sum[])
+/* half kick and drift of a free node; the works of the step's first half are added to sum */
+BY_HD void TLEDStepOpen(const TLEDStep *s, double m, const double f_int[3], const double f_ext[3], double u[3], double v[3], double sum[])
 {
   const double h = 0.5*s->dt, keep = 1.0 - s->alpha*h;
 
-  if (motion == TLED_FIXED) {
-    v[0] = v[1] = v[2] = 0.0;
-    return;
-  }
   for (int k = 0; k < 3; k++) {
     const double a = (f_ext[k] - f_int[k]) / m + s->gravity[k];
     double       du;
-    if (motion == TLED_FREE) sum[TLED_SUM_DAMPING] += s->alpha*m*v[k]*v[k]*h;
-    v[k] = motion == TLED_FREE ? keep*v[k] + h*a : s->velocity[k];
+    sum[TLED_SUM_DAMPING] += s->alpha*m*v[k]*v[k]*h;
+    v[k] = keep*v[k] + h*a;
     du   = s->dt*v[k];
     u[k] += du;
-    sum[TLED_SUM_EXTERNAL] += motion == TLED_FREE ? f_ext[k]*du : 0.5*(f_int[k] - m*s->gravity[k])*du;
+    sum[TLED_SUM_EXTERNAL] += 0.5*f_ext[k]*du;
     sum[TLED_SUM_INTERNAL] += 0.5*f_int[k]*du;
   }
 }
 
 /* half kick with the force at the new place; the works of the step's second half are added to sum */
-BY_HD void TLEDStepClose(const TLEDStep *s, int motion, double m, const double f_int[3], const double f_ext[3], double v[3],
-                         double sum[])
+BY_HD void TLEDStepClose(const TLEDStep *s, double m, const double f_int[3], const double f_ext[3], double v[3], double sum[])
 {
   const double h = 0.5*s->dt, keep = 1.0 / (1.0 + s->alpha*h);
 
-  if (motion == TLED_FIXED) return;
   for (int k = 0; k < 3; k++) {
     const double a = (f_ext[k] - f_int[k]) / m + s->gravity[k], du = s->dt*v[k];
+    sum[TLED_SUM_EXTERNAL] += 0.5*f_ext[k]*du;
     sum[TLED_SUM_INTERNAL] += 0.5*f_int[k]*du;
-    if (motion == TLED_FREE) {
-      v[k] = keep*(v[k] + h*a);
-      sum[TLED_SUM_DAMPING] += s->alpha*m*v[k]*v[k]*h;
-    } else sum[TLED_SUM_EXTERNAL] += 0.5*(f_int[k] - m*s->gravity[k])*du;
+    v[k] = keep*(v[k] + h*a);
+    sum[TLED_SUM_DAMPING] += s->alpha*m*v[k]*v[k]*h;
+  }
+}
+
+/* TLEDStepOpen of a node that is held in the directions Q = I - P: its held part lands on `target` = Q u(t + dt) exactly, with the mean
+   velocity that takes it there; the rest moves as a free node does. The support gives the work of its force,
+   Q (m a + f_int - f_ext - m g), that is (f_int - f_ext - m g) . Q du and what the held part's kinetic energy gains; no damping there. */
+BY_HD void TLEDStepOpenHeld(const TLEDStep *s, const double P[9], const double target[3], double m, const double f_int[3],
+                            const double f_ext[3], double u[3], double v[3], double sum[])
+{
+  const double h = 0.5*s->dt, keep = 1.0 - s->alpha*h;
+  double       a[3], free_v[3], free_a[3], free_u[3];
+
+  for (int k = 0; k < 3; k++) a[k] = (f_ext[k] - f_int[k]) / m + s->gravity[k];
+  Mul3(P, a, free_a);
+  Mul3(P, v, free_v);
+  Mul3(P, u, free_u);
+  for (int k = 0; k < 3; k++) {
+    const double held_v = v[k] - free_v[k], held_du = target[k] - (u[k] - free_u[k]);
+    double       du;
+    sum[TLED_SUM_DAMPING] += s->alpha*m*free_v[k]*free_v[k]*h;
+    free_v[k] = keep*free_v[k] + h*free_a[k];
+    du        = s->dt*free_v[k] + held_du;
+    u[k]      = free_u[k] + s->dt*free_v[k] + target[k];
+    v[k]      = du / s->dt;
+    sum[TLED_SUM_EXTERNAL] += 0.5*f_ext[k]*du;
+    sum[TLED_SUM_INTERNAL] += 0.5*f_int[k]*du;
+    sum[TLED_SUM_SUPPORT] += 0.5*((f_int[k] - f_ext[k] - m*s->gravity[k])*held_du - m*held_v*held_v);
+  }
+}
+
+/* TLEDStepClose of such a node; `velocity` is the held part's own at the new time */
+BY_HD void TLEDStepCloseHeld(const TLEDStep *s, const double P[9], const double velocity[3], double m, const double f_int[3],
+                             const double f_ext[3], double v[3], double sum[])
+{
+  const double h = 0.5*s->dt, keep = 1.0 / (1.0 + s->alpha*h);
+  double       a[3], free_v[3], free_a[3];
+
+  for (int k = 0; k < 3; k++) a[k] = (f_ext[k] - f_int[k]) / m + s->gravity[k];
+  Mul3(P, a, free_a);
+  Mul3(P, v, free_v);
+  for (int k = 0; k < 3; k++) {
+    const double du = s->dt*v[k], held_du = du - s->dt*free_v[k];
+    sum[TLED_SUM_EXTERNAL] += 0.5*f_ext[k]*du;
+    sum[TLED_SUM_INTERNAL] += 0.5*f_int[k]*du;
+    sum[TLED_SUM_SUPPORT] += 0.5*((f_int[k] - f_ext[k] - m*s->gravity[k])*held_du + m*velocity[k]*velocity[k]);
+    free_v[k] = keep*(free_v[k] + h*free_a[k]);
+    sum[TLED_SUM_DAMPING] += s->alpha*m*free_v[k]*free_v[k]*h;
+    v[k] = free_v[k] + velocity[k];
   }
 }
 

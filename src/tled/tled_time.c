@@ -66,8 +66,41 @@ typedef struct {
   PetscReal       *u, *v, *probe;
   const PetscReal *f;
   TLEDStep         step;
-  PetscReal        beta; /* stiffness damping [s] */
+  PetscReal        beta;  /* stiffness damping [s]                                       */
+  PetscReal        start; /* time at which these substeps begin [s]                      */
+  PetscReal        end;   /* time of the end of the last one, of which there are `left` */
+  PetscInt         left;
 } Work;
+
+/* a node that is held or moved: its part of the support's motion, then the step */
+static void OpenHeld(TLED tled, const Work *w, int a, const double force[3], double u[3], double v[3], double sum[])
+{
+  const TLEDHeld *h = &tled->constraints.held[tled->constraints.held_of[a]];
+  double          target[3];
+
+  TLEDHeldPart(h, tled->constraints.next, &tled->mesh.X[3 * a], TLED_MOTION_DISPLACEMENT, target);
+  TLEDStepOpenHeld(&w->step, h->P, target, tled->mass[a], force, &w->f[3 * a], u, v, sum);
+}
+
+static void CloseHeld(TLED tled, const Work *w, int a, const double force[3], double v[3], double sum[])
+{
+  const TLEDHeld *h = &tled->constraints.held[tled->constraints.held_of[a]];
+  double          velocity[3];
+
+  TLEDHeldPart(h, tled->constraints.now, &tled->mesh.X[3 * a], TLED_MOTION_VELOCITY, velocity);
+  TLEDStepCloseHeld(&w->step, h->P, velocity, tled->mass[a], force, &w->f[3 * a], v, sum);
+}
+
+/* the supports' motion at the end of substep s, counted from `start`, and of the one after; by one thread */
+static void MoveSupports(TLED tled, const Work *w, PetscInt s)
+{
+  TLEDConstraints *c      = &tled->constraints;
+  TLEDMotion      *passed = c->now;
+
+  c->now  = c->next;
+  c->next = passed;
+  TLEDMotionsAt_Private(c, s + 2 < w->left ? w->start + (PetscReal)(s + 2) * w->step.dt : w->end, c->next);
+}
 
 /* One pass over the nodes, chunk by chunk: close the substep before (gathering its forces) and open the next. All threads
    call it. */
@@ -88,12 +121,14 @@ static void NodePass(TLED tled, const Work *w, int close, int open)
         for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++)
           for (int i = 0; i < 3; i++) f[i] += loops->partial[3 * b->slot[k] + i];
         for (int i = 0; i < 3; i++) force[i] = f[i];
-        TLEDStepClose(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3 * a], v, sum);
+        if (tled->motion[a] == TLED_FREE) TLEDStepClose(&w->step, tled->mass[a], force, &w->f[3 * a], v, sum);
+        else if (tled->motion[a] == TLED_HELD) CloseHeld(tled, w, a, force, v, sum);
         if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, &w->f[3 * a], sum);
       }
       if (open) {
         if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, &w->f[3 * a], sum);
-        TLEDStepOpen(&w->step, tled->motion[a], tled->mass[a], force, &w->f[3 * a], u, v, sum);
+        if (tled->motion[a] == TLED_FREE) TLEDStepOpen(&w->step, tled->mass[a], force, &w->f[3 * a], u, v, sum);
+        else if (tled->motion[a] == TLED_HELD) OpenHeld(tled, w, a, force, u, v, sum);
         for (int i = 0; i < 3 && w->beta > 0.0; i++) w->probe[3 * a + i] = u[i] + w->beta * v[i];
       }
     }
@@ -108,8 +143,16 @@ static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
 #pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
   {
     PetscInt s;
+    if (tled->constraints.moves) {
+#pragma omp single
+      MoveSupports(tled, w, -1);
+    }
     NodePass(tled, w, 0, 1);
     for (s = 0; s < m; s++) {
+      if (tled->constraints.moves) {
+#pragma omp single
+        MoveSupports(tled, w, s);
+      }
       TLEDElementForces_OpenMP(&tled->loops, w->beta > 0.0 ? w->probe : w->u);
       if (TLEDElementsBroken_OpenMP(&tled->loops)) break; /* the same answer on every thread */
       NodePass(tled, w, 1, s + 1 < m);
@@ -143,6 +186,7 @@ static void AddWorks(TLED tled)
   for (PetscInt c = 0; c < n_chunks; c++) {
     PetscReal *sum = &tled->sums[TLED_SUMS * c];
     tled->state.external_work += sum[TLED_SUM_EXTERNAL];
+    tled->state.support_work += sum[TLED_SUM_SUPPORT];
     tled->state.damping_loss += sum[TLED_SUM_DAMPING];
     tled->state.internal_work += sum[TLED_SUM_INTERNAL];
     for (PetscInt k = 0; k < 3; k++) tled->state.moment[k] += sum[TLED_SUM_MOMENT + k];
@@ -169,6 +213,7 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
     }
     const PetscInt m    = PetscMin(left, RENEW_STEPS);
     w->step.dt          = h;
+    w->start = start + passed, w->end = start + dt, w->left = left;
     const PetscInt done = Substeps(tled, w, m);
     AddWorks(tled);
     *n_substeps += done;
@@ -180,8 +225,9 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
       PetscFunctionReturn(TLEDReportBroken_Private(tled, w->beta > 0.0 ? w->probe : w->u, start + passed + h));
     }
   } while (left);
-  tled->state.time  = start + dt;
-  tled->force_valid = PETSC_TRUE;
+  tled->state.time      = start + dt;
+  tled->state.is_static = 0.0;
+  tled->force_valid     = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -221,7 +267,7 @@ PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps)
   w.probe      = tled->probe;
   w.beta       = p->stiffness_damping;
   w.step.alpha = p->damping;
-  for (k = 0; k < 3; k++) w.step.gravity[k] = tled->gravity[k], w.step.velocity[k] = p->prescribed_velocity[k];
+  for (k = 0; k < 3; k++) w.step.gravity[k] = tled->gravity[k];
   PetscCall(VecGetArray(tled->u, &w.u));
   PetscCall(VecGetArray(tled->v, &w.v));
   PetscCall(VecGetArrayRead(tled->f, &w.f));
