@@ -119,23 +119,6 @@ static PetscErrorCode PickWetted(TLED tled)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* lumped mass: a quarter of each element's to its corners */
-static PetscErrorCode LumpMass(TLED tled)
-{
-  const TLEDBlocks *b = &tled->blocks;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc1(tled->mesh.n_nodes, &tled->mass));
-  tled->volume = 0.0;
-  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
-    if (b->element[l] < 0) continue;
-    tled->volume += b->V0[l];
-    const PetscReal density = tled->materials[b->material[l / TLED_LANES]].density;
-    for (int a = 0; a < 4; a++) tled->mass[tled->mesh.tets[4 * b->element[l] + a]] += 0.25 * density * b->V0[l];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SetUpLoops(TLED tled)
 {
   const TLEDBlocks *b = &tled->blocks;
@@ -209,9 +192,10 @@ PetscErrorCode TLEDSetUp(TLED tled)
   ByCall(TLEDConstraintsSetUp_Private(tled));
   ByCall(PickWetted(tled));
   tled->is_free = (PetscBool)(tled->constraints.n_held == 0);
-  PetscCall(LumpMass(tled));
+  PetscCall(TLEDLumpMass_Private(tled));
   PetscCall(SetUpLoops(tled));
   PetscCall(CreateVectors(tled));
+  PetscCall(TLEDScaleMass_Private(tled));
   tled->set_up = PETSC_TRUE;
   PetscCall(PetscObjectViewFromOptions((PetscObject)tled, NULL, "-view"));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -230,6 +214,9 @@ PetscErrorCode TLEDView(TLED tled, PetscViewer viewer)
                                      " boundary triangles (%" PetscInt_FMT " wetted), volume %g m^3, element %s\n",
                                      tled->mesh.n_nodes, tled->mesh.n_tets, tled->blocks.n_blocks, tled->mesh.n_triangles,
                                      tled->n_wetted, (double)tled->volume, tled->loops.ops->name));
+    if (tled->params.mass_scaling > 0.0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "mass scaling: %g kg (%.4g %%) added to %" PetscInt_FMT " elements\n",
+                                       (double)tled->mass_added, (double)(100.0 * tled->mass_added / tled->mass_total), tled->n_scaled));
     if (tled->state.critical > 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, "critical step %g s\n", (double)tled->state.critical));
   }
   PetscCall(KeysView(TLEDKeys, &tled->params, viewer));

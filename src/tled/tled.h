@@ -27,6 +27,7 @@ typedef struct {
   PetscReal damping;                  /* alpha [1/s] of D = alpha M                                          */
   PetscReal stiffness_damping;        /* beta [s] of a stiffness-proportional viscous stress; 0 = none       */
   PetscReal safety;                   /* of the critical step                                                */
+  PetscReal mass_scaling;             /* critical step that short elements get mass to reach [s]; 0 = none    */
   PetscReal scale;                    /* mesh coordinates times this                                         */
   PetscReal translate[3];             /* [m], after scaling                                                  */
   PetscReal velocity[3];              /* initial velocity [m/s]                                              */
@@ -79,6 +80,8 @@ BY_EXTERN PetscErrorCode TLEDGetSurface(TLED tled, PetscBool wetted_only, PetscI
 /* nodes of a physical group; unknown group: n = 0 */
 BY_EXTERN PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n, const PetscInt *nodes[]);
 BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
+/* mass that mass scaling added: [kg], and per cent of the mass before; either may be NULL */
+BY_EXTERN PetscErrorCode TLEDGetAddedMass(TLED tled, PetscReal *mass, PetscReal *percent);
 BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* no fixed or prescribed node        */
 /* n_nodes: which nodes are not entirely free: held in some direction, or moved */
 BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]);

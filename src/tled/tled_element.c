@@ -38,7 +38,7 @@ PetscErrorCode TLEDElementPick_Private(TLED tled)
 . tets  - nodes of all elements
 . lane  - place of the element, not padding
 . point - number of the integration point
-- u     - displacement [m], n_nodes x 3
+- u     - displacement [m], n_nodes x 3, NULL for the reference state
 
   Output Parameter:
 . p - law, gradients, volume, deformation
@@ -52,13 +52,13 @@ void TLEDPointAt_Private(const TLEDLoops *w, const PetscInt tets[], int lane, in
   p->law = &w->laws[b->material[pack]];
   w->ops->point(b, lane, point, p->G, &p->V0);
   for (int k = 0; k < 9; k++) p->H[k] = 0.0;
-  for (int a = 1; a < n; a++) /* differences keep the digits of small strains in a body that has moved far */
+  for (int a = 1; a < n && u; a++) /* differences keep the digits of small strains in a body that has moved far */
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) p->H[3 * i + j] += (u[3 * corner[a] + i] - u[3 * corner[0] + i]) * p->G[3 * a + j];
   p->jm1 = TLEDJacobianMinusOne(p->H);
   for (int k = 0; k < 3; k++) p->fibre[k] = b->fibre ? b->fibre[(3 * pack + k) * TLED_LANES + lane % TLED_LANES] : 0.0;
   for (int k = 0; k < 9; k++) p->seen[k] = p->H[k];
-  if (w->ops->averaged) {
+  if (w->ops->averaged && u) {
     double jbar = 0.0;
     for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]];
     (void)TLEDAverageGradient(p->H, 1.0 / (1.0 + p->jm1), 1.0 + jbar, p->seen);

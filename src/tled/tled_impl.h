@@ -162,6 +162,9 @@ struct _p_TLED {
   PetscInt     n_wetted;       /* triangles of the wetted groups                              */
   PetscInt    *wetted;         /* n_wetted x 3                                                */
   PetscReal   *mass;           /* lumped, n_nodes [kg]                                        */
+  PetscReal    mass_total;     /* without what mass scaling added [kg]                        */
+  PetscReal    mass_added;     /* by mass scaling, which is in `mass` [kg]                    */
+  PetscInt     n_scaled;       /* elements to which it was added                              */
   PetscReal    volume;         /* reference [m^3]                                             */
   PetscBool   *constrained;    /* n_nodes                                                     */
   signed char *motion;         /* n_nodes: TLED_FREE, TLED_FIXED at rest, TLED_HELD any other */
@@ -224,6 +227,10 @@ PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *ene
 PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscReal time);
 /* tled_assembly.c */
 PetscErrorCode TLEDAssemblyDestroy_Private(struct TLEDAssembly **assembly);
+/* tled_mass.c */
+PetscErrorCode TLEDLumpMass_Private(TLED tled);
+PetscErrorCode TLEDScaleMass_Private(TLED tled);
+void           TLEDStiffnessAt_Private(TLED tled, int lane, const PetscReal u[], double K[]);
 /* tled_critical.c */
 PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt n_steps, PetscReal *dt);
 /* tled_constraint.c */

@@ -30,6 +30,8 @@ const Key TLEDKeys[] = {
     ROW(damping, KEY_REAL, "1/s", "0", 0, 1e9, 0, NULL, "mass-proportional damping"),
     ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; a body in water that does not name it has 0.05 of its critical step"),
     ROW(safety, KEY_REAL, "1", "0.9", 0, 1, KEY_LO_OPEN, NULL, "time step over the critical time step"),
+    ROW(mass_scaling, KEY_REAL, "s", "0", 0, 1e6, 0, NULL,
+        "critical step that the shortest elements are given mass to reach, safety not included; 0: none"),
     ROW(scale, KEY_REAL, "1", "1", 0, 1e9, KEY_LO_OPEN, NULL, "factor on the mesh's coordinates"),
     ROW(translate, KEY_VEC3, "m", "0,0,0", -1e9, 1e9, 0, NULL, "shift of the mesh after scaling"),
     ROW(velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "initial velocity"),
