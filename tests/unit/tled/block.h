@@ -226,13 +226,13 @@ static inline double SmallestAngleOf(TLED tled)
 {
   const PetscInt  *tets;
   const PetscReal *X;
-  PetscInt         n_tets;
+  PetscInt         n_tets, n_corners;
   double           least = 180.0, x[12];
 
   assert_petsc(TLEDGetSize(tled, NULL, &n_tets));
-  assert_petsc(TLEDGetMesh(tled, &tets, &X));
+  assert_petsc(TLEDGetMesh(tled, &n_corners, &tets, &X));
   for (PetscInt e = 0; e < n_tets; e++) {
-    for (int k = 0; k < 12; k++) x[k] = X[3 * tets[4 * e + k / 3] + k % 3];
+    for (int k = 0; k < 12; k++) x[k] = X[3 * tets[n_corners * e + k / 3] + k % 3];
     least = fmin(least, SmallestAngle(x));
   }
   return least;
