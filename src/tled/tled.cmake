@@ -16,3 +16,5 @@ set_source_files_properties(src/tled/tled_openmp.c PROPERTIES COMPILE_OPTIONS "-
 # speed and error of the solid alone: cmake --build build --target bench.tled
 add_executable(bench.tled EXCLUDE_FROM_ALL bench/bench_tled.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:tled>)
 target_link_libraries(bench.tled PRIVATE byssus_flags)
+# the implicit solver
+target_sources(tled PRIVATE src/tled/tled_implicit.c src/tled/tled_static.c src/tled/tled_newmark.c)

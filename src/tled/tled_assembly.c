@@ -261,6 +261,15 @@ void TLEDAssemblyAddMass_Private(TLED tled, PetscReal factor, TLEDAssembly *s)
   }
 }
 
+PetscReal TLEDAssemblyTrace_Private(const TLEDAssembly *s)
+{
+  PetscReal sum = 0.0;
+
+  for (PetscInt a = s->first; a < s->last; a++)
+    for (PetscInt i = 0; i < 3; i++) sum += s->stiffness[9 * Place(s, a, a) + 4 * i];
+  return sum;
+}
+
 /* value <- P value, or value P with `right`; value has `rows` rows of three */
 static void TimesProjector(const PetscReal P[9], PetscInt rows, PetscBool right, PetscReal value[])
 {

@@ -42,6 +42,8 @@ void TLEDAssemblyScale_Private(TLEDAssembly *assembly, PetscReal factor);
 void TLEDAssemblyAdd_Private(TLEDAssembly *assembly, PetscInt a, PetscInt b, PetscReal factor, const PetscReal block[9]);
 /* K_aa += factor m_a I */
 void TLEDAssemblyAddMass_Private(TLED tled, PetscReal factor, TLEDAssembly *assembly);
+/* sum of the diagonal numbers of this rank's rows (without the parts of the sparse products) */
+PetscReal TLEDAssemblyTrace_Private(const TLEDAssembly *assembly);
 /* P_a K_ab P_b + held (I - P_a): the constrained directions apart */
 void TLEDAssemblyProject_Private(TLED tled, PetscReal held, TLEDAssembly *assembly);
 /* the values as a matrix, created when *K is NULL, else the one of an earlier call of the same kind */

@@ -1,0 +1,176 @@
+/* tled_static.c - equilibrium by Newton's method along a way of loads and constraints, in steps that adapt. */
+#include "tled/tled_implicit_impl.h"
+#include <petsctime.h>
+
+#define EASY 6   /* Newton iterations of a step after which the next may be twice as long */
+#define FINE 1e-6 /* of a prescribed move: how far it is tried to find what the body answers to first order */
+
+/* What leads from the start to the end. */
+typedef struct {
+  PetscReal  t_start, t_end;
+  PetscReal *imbalance;  /* f_ext - f_int at the start, which is taken away bit by bit [N]                   */
+  PetscReal *offset;     /* u - prescribed displacement at the start, taken away too; constrained directions [m] */
+} Way;
+
+/* the problem at part s of the way */
+static PetscErrorCode SetPart(TLEDImplicit im, const Way *way, PetscReal s)
+{
+  TLEDImplicitProblem *q = &im->problem;
+  const PetscInt       n = 3 * im->tled->mesh.n_nodes;
+
+  PetscFunctionBegin;
+  q->time = way->t_start + s * (way->t_end - way->t_start);
+  PetscCall(TLEDPrescribed_Private(im->tled, q->time, q->held_at, NULL, NULL));
+  for (PetscInt k = 0; k < n; k++) {
+    q->constant[k] = (1.0 - s) * way->imbalance[k];
+    q->held_at[k] += (1.0 - s) * way->offset[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* the state where the way begins: what is out of balance there */
+static PetscErrorCode BeginWay(TLEDImplicit im, const PetscReal u[], PetscReal t_end, Way *way)
+{
+  TLEDImplicitProblem *q = &im->problem;
+  const PetscInt       n = 3 * im->tled->mesh.n_nodes;
+
+  PetscFunctionBegin;
+  way->t_start = im->tled->state.time, way->t_end = t_end;
+  q->share = 1.0, q->inertia = q->viscous = 0.0, q->history = 0.0;
+  PetscCall(PetscArrayzero(q->u0, n));
+  PetscCall(PetscCalloc2(n, &way->imbalance, n, &way->offset));
+  PetscCall(TLEDPrescribed_Private(im->tled, way->t_start, q->held_at, NULL, NULL));
+  for (PetscInt k = 0; k < n; k++) way->offset[k] = u[k];
+  PetscCall(TLEDProject_Private(im->tled, way->offset));
+  for (PetscInt k = 0; k < n; k++) way->offset[k] = u[k] - way->offset[k] - q->held_at[k];
+  PetscCall(TLEDExternalForces_Private(im->tled, way->t_start, u, im->f_ext));
+  ByCall(TLEDImplicitForces_Private(im, u, im->f_int));
+  for (PetscInt k = 0; k < n; k++) way->imbalance[k] = im->f_ext[k] - im->f_int[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = P x + what is prescribed */
+static PetscErrorCode Hold(TLEDImplicit im, PetscReal x[])
+{
+  PetscFunctionBegin;
+  PetscCall(TLEDProject_Private(im->tled, x));
+  for (PetscInt k = 0; k < 3 * im->tled->mesh.n_nodes; k++) x[k] += im->problem.held_at[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* First guess at the next part: along the last step when there was one. Else a prescribed move is answered to first order,
+   x = u + move - K^-1 P K move, so that the elements beside the moved nodes do not take it all. */
+static PetscErrorCode Guess(TLEDImplicit im, const PetscReal u[], const PetscReal last[], PetscReal ratio, PetscReal x[])
+{
+  const PetscInt n = 3 * im->tled->mesh.n_nodes;
+  PetscReal     *move = im->residual, *answer = im->f_ext, size = 0.0;
+  PetscBool      solved;
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < n; k++) x[k] = u[k] + ratio * (u[k] - last[k]);
+  PetscCall(Hold(im, x));
+  if (ratio > 0.0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < n; k++) move[k] = x[k] - u[k], size = PetscMax(size, PetscAbsReal(move[k]));
+  if (size == 0.0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < n; k++) im->y[k] = u[k] + FINE * move[k]; /* K move by a difference of the forces */
+  ierr = TLEDImplicitForces_Private(im, im->y, answer);
+  if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ierr);
+  for (PetscInt k = 0; k < n; k++) im->y[k] = u[k] - FINE * move[k];
+  ierr = TLEDImplicitForces_Private(im, im->y, im->f_int);
+  if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ierr);
+  for (PetscInt k = 0; k < n; k++) answer[k] = (im->f_int[k] - answer[k]) / (2.0 * FINE);
+  PetscCall(TLEDProject_Private(im->tled, answer));
+  ierr = TLEDImplicitLinear_Private(im, u, answer, im->f_int, &solved);
+  if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ierr);
+  for (PetscInt k = 0; k < n && solved; k++) x[k] += im->f_int[k];
+  if (solved) PetscCall(Hold(im, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* load steps from u to the end; u is the last equilibrium found, part where it is */
+static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], PetscReal *part)
+{
+  const PetscInt n    = 3 * im->tled->mesh.n_nodes;
+  PetscReal     *last = im->last, *x = im->trial, s = 0.0, ds = im->params.load_step, ds_last = 0.0;
+  PetscBool      converged;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(last, u, n));
+  while (s < 1.0) {
+    const PetscReal next   = s + ds > 1.0 - 1e-9 ? 1.0 : s + ds;
+    const PetscInt  before = im->stats.newton;
+    *part = s;
+    PetscCall(SetPart(im, way, next));
+    PetscCall(Guess(im, u, last, ds_last > 0.0 ? (next - s) / ds_last : 0.0, x));
+    PetscCall(TLEDImplicitNewton_Private(im, x, &converged));
+    if (!converged) {
+      im->stats.cuts++;
+      ds = 0.5 * (next - s);
+      if (ds < im->params.load_step_min) PetscFunctionReturn(BY_ERR_BREAKDOWN);
+      continue;
+    }
+    PetscCall(PetscArraycpy(last, u, n));
+    PetscCall(PetscArraycpy(u, x, n));
+    ds_last = next - s, s = next;
+    im->stats.load_steps++;
+    if (im->stats.newton - before <= EASY) ds *= 2.0;
+  }
+  *part = 1.0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TLEDImplicitSolveStatic - from the body's state to equilibrium
+
+  Collective
+
+  Input Parameters:
++ implicit - the solver
+- time     - whose loads and constraints are to be balanced [s]; it becomes the body's time
+
+  The way there has a parameter s from 0 to 1: f_int(u) = f_ext(t(s), u) - (1 - s) (f_ext - f_int at the start), with the prescribed
+  displacements of t(s) treated alike. Each load step is solved by Newton's method with a line search; one that fails, or that turns
+  an element inside out, is tried again with half the step.
+
+  Errors: BY_ERR_BREAKDOWN when steps become shorter than load_step_min; TLEDGetBreakdown() tells how far the load went
+
+  Tests: tests/unit/tled/test_static.c, test_implicit.c
+@*/
+PetscErrorCode TLEDImplicitSolveStatic(TLEDImplicit im, PetscReal time)
+{
+  const TLED       tled = im->tled;
+  const PetscReal *u;
+  PetscReal        part = 0.0;
+  PetscLogDouble   t0, t1;
+  Way              way = {0};
+  PetscErrorCode   ierr;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTime(&t0));
+  PetscCall(PetscMemzero(&im->stats, sizeof im->stats));
+  PetscCall(TLEDImplicitSetUp_Private(im));
+  PetscCall(VecGetArrayRead(tled->u, &u));
+  PetscCall(PetscArraycpy(im->start, u, 3 * tled->mesh.n_nodes));
+  PetscCall(VecRestoreArrayRead(tled->u, &u));
+  ierr = BeginWay(im, im->start, time, &way);
+  if (ierr == BY_ERR_BREAKDOWN) ierr = TLEDReportBroken_Private(tled, im->start, tled->state.time);
+  else if (!ierr) {
+    ierr = FollowWay(im, &way, im->start, &part);
+    if (ierr == BY_ERR_BREAKDOWN)
+      PetscCall(PetscSNPrintf(tled->breakdown, TLED_MESSAGE,
+                              "body %s: no equilibrium beyond %.4g of the load: Newton's method fails for a load step of %.2g (residual "
+                              "over forces %.2g), time %.6g s",
+                              ((PetscObject)tled)->name, (double)part, (double)im->params.load_step_min,
+                              (double)im->stats.residual, (double)im->problem.time));
+    PetscCall(TLEDImplicitFinish_Private(im, im->start, NULL, part < 1.0 ? way.t_start + part * (time - way.t_start) : time));
+  }
+  PetscCall(PetscFree2(way.imbalance, way.offset));
+  PetscCall(PetscTime(&t1));
+  im->stats.seconds = t1 - t0;
+  ByCall(ierr);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
