@@ -13,8 +13,8 @@ byssus_module(tled
   src/tled/tled_device.c ${TLED_DEVICE})
 # no floating-point status flags: comparisons vectorise; nothing is reordered
 set_source_files_properties(src/tled/tled_openmp.c PROPERTIES COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
-# speed and error of the solid alone: cmake --build build --target bench.tled
-add_executable(bench.tled EXCLUDE_FROM_ALL bench/bench_tled.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:tled>)
-target_link_libraries(bench.tled PRIVATE byssus_flags)
+# speed and error of the solid alone: cmake --build build --target bench.solid
+add_executable(bench.solid EXCLUDE_FROM_ALL bench/bench_solid.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:tled>)
+target_link_libraries(bench.solid PRIVATE byssus_flags)
 # the implicit solver
 target_sources(tled PRIVATE src/tled/tled_implicit.c src/tled/tled_static.c src/tled/tled_newmark.c)
