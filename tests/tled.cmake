@@ -6,6 +6,7 @@ byssus_test(unit/tled/test_time base tled)
 byssus_test(unit/tled/test_critical base tled)
 byssus_test(unit/tled/test_constraint base tled)
 byssus_test(unit/tled/test_mass base tled)
+byssus_test(unit/tled/test_relax base tled)
 byssus_test(unit/tled/test_mesh base tled)
 byssus_test(unit/tled/test_t10 base tled)
 

@@ -103,6 +103,12 @@ BY_EXTERN PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt);
    returns BY_ERR_BREAKDOWN, TLEDGetBreakdown tells element, position and time. The critical step is renewed as the body deforms. */
 BY_EXTERN PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps);
 BY_EXTERN PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps);
+/* From the state at its time to rest under the loads and supports of time `time`, by dynamic relaxation: the same internal forces as
+   Advance in fictitious time. u is then the static solution, v = 0, the TLED's time is `time`. Ended when the residual over the
+   forces and the estimated error of u over the largest u are below `tolerance` (1e-7 gives six digits); steps and residual may be
+   NULL. BY_ERR_BREAKDOWN when max_steps do not suffice or an element breaks; TLEDGetBreakdown() says why. */
+BY_EXTERN PetscErrorCode TLEDRelax(TLED tled, PetscReal time, PetscReal tolerance, PetscInt max_steps, PetscInt *steps,
+                                   PetscReal *residual);
 BY_EXTERN PetscErrorCode TLEDGetBreakdown(TLED tled, const char **message);
 /* snapshot of u, v, time, energies and back (one level; the staggered loop runs a step twice) */
 BY_EXTERN PetscErrorCode TLEDSave(TLED tled);

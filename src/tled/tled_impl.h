@@ -232,6 +232,8 @@ PetscErrorCode TLEDLumpMass_Private(TLED tled);
 PetscErrorCode TLEDScaleMass_Private(TLED tled);
 void           TLEDStiffnessAt_Private(TLED tled, int lane, const PetscReal u[], double K[]);
 /* tled_critical.c */
+PetscErrorCode TLEDHighestMode_Private(TLED tled, const PetscReal mass[], const PetscReal u[], PetscInt n_steps, PetscReal mode[],
+                                       PetscReal *top);
 PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt n_steps, PetscReal *dt);
 /* tled_constraint.c */
 PetscErrorCode TLEDConstraintsFromOptions_Private(TLED tled);
