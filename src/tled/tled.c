@@ -188,6 +188,7 @@ PetscErrorCode TLEDSetUp(TLED tled)
   ByCall(TLEDMaterialsSetUp_Private(tled));
   PetscCall(TLEDElementPick_Private(tled));
   PetscCall(TLEDBlocksCreate_Private(&tled->mesh, 1, &tled->blocks));
+  PetscCall(TLEDFibresSetUp_Private(tled));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(TLEDConstraintsSetUp_Private(tled));
   ByCall(PickWetted(tled));

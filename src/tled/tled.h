@@ -8,7 +8,13 @@
 
 typedef struct _p_TLED *TLED;
 
-typedef enum { TLED_MATERIAL_NEO_HOOKEAN, TLED_MATERIAL_ST_VENANT_KIRCHHOFF } TLEDMaterial;
+typedef enum {
+  TLED_MATERIAL_NEO_HOOKEAN,
+  TLED_MATERIAL_ST_VENANT_KIRCHHOFF,
+  TLED_MATERIAL_NEO_HOOKEAN_ISO,
+  TLED_MATERIAL_MOONEY_RIVLIN,
+  TLED_MATERIAL_TRANSVERSELY_ISOTROPIC
+} TLEDMaterial;
 typedef enum { TLED_ELEMENT_AUTO, TLED_ELEMENT_T4, TLED_ELEMENT_ANP } TLEDElement;
 
 /* An elastic material; TLEDMaterialKeys[] (tled_keys.c) declares each member. The body's own one is TLEDParams.elastic. */
@@ -17,6 +23,10 @@ typedef struct {
   int       material;                      /* TLEDMaterial                                                               */
   PetscReal density;                       /* rho [kg/m^3]                                                               */
   PetscReal young, poisson;                /* E [Pa], nu [1] at small strain                                             */
+  PetscReal bulk;                          /* kappa [Pa] of the laws that split volume from shape; 0 = from poisson      */
+  PetscReal c10, c01;                      /* of Mooney and Rivlin [Pa], in place of young                               */
+  PetscReal fibre_stiffness;               /* eta [Pa] of a transversely isotropic material                              */
+  PetscReal fibre[3];                      /* direction of its fibres, of any length                                     */
 } TLEDMaterialParams;
 
 /* Parameters of a body's section `<body>:`; TLEDKeys[] (tled_keys.c) declares each. */

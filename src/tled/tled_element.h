@@ -41,19 +41,6 @@ BY_HD void TLEDNodalForces(const double P[9], const double G[9], double V0, doub
   f[8] = V0*(P[6]*G[6] + P[7]*G[7] + P[8]*G[8]);
 }
 
-/* cube root of x > 0 by Halley's iteration y <- y (y^3 + 2x)/(2y^3 + x) from y = 1: to round-off for 1e-2 < x < 1e2 (and to 1e-9 for a
-   thousand), branch-free, so that a loop over elements vectorises */
-BY_HD double TLEDCubeRoot(double x)
-{
-  double y = (1.0 + 2.0*x) / (2.0 + x);
-
-  y *= (y*y*y + 2.0*x) / (2.0*y*y*y + x);
-  y *= (y*y*y + 2.0*x) / (2.0*y*y*y + x);
-  y *= (y*y*y + 2.0*x) / (2.0*y*y*y + x);
-  y *= (y*y*y + 2.0*x) / (2.0*y*y*y + x);
-  return y;
-}
-
 /* Average nodal pressure [Joldes09, variational form of method 3]: the element sees Fbar = r F, r = (Jbar/J)^(1/3), Jbar the mean of
    its nodes' volume ratios J_a = sum_e V0_e J_e / sum_e V0_e. Energy sum_e V0_e W(Fbar_e); for a law W_iso(F) + U(J) this is
    W_iso(F) + U(Jbar). Hbar = Fbar - I; r is returned. */

@@ -207,6 +207,7 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
                                          const TLEDGroup **group);
 /* tled_materials.c: laws of the materials, and mesh->material */
 PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled);
+PetscErrorCode TLEDFibresSetUp_Private(TLED tled); /* blocks.fibre */
 /* tled_element.c */
 extern const TLEDElementOps TLEDElementT4, TLEDElementANP;
 PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */

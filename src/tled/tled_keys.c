@@ -1,15 +1,23 @@
 /* tled_keys.c - the scene keys of a body: default, unit, range and help of each member of TLEDParams. */
 #include "tled/tled.h"
 
-static const char *const materials[] = {"neo_hookean", "st_venant_kirchhoff", NULL}; /* in the order of TLEDMaterial */
-static const char *const elements[]  = {"auto", "t4", "anp", NULL};                  /* in the order of TLEDElement  */
+static const char *const materials[] = {"neo_hookean", "st_venant_kirchhoff", "neo_hookean_iso", "mooney_rivlin", "transversely_isotropic",
+                                        NULL};                      /* in the order of TLEDMaterial */
+static const char *const elements[]  = {"auto", "t4", "anp", NULL}; /* in the order of TLEDElement  */
 
 /* the keys of a material, for a struct S in which it is the member m (with its dot, or nothing) */
+// clang-format off
 #define ELASTIC(S, m) \
   {"material", KEY_CHOICE, offsetof(S, m material), "", "neo_hookean", 0, 0, 0, materials, "elastic law"}, \
   {"density", KEY_REAL, offsetof(S, m density), "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "mass per reference volume"}, \
-  {"young", KEY_REAL, offsetof(S, m young), "Pa", NULL, 0, 1e15, KEY_LO_OPEN, NULL, "Young's modulus at small strain"}, \
-  {"poisson", KEY_REAL, offsetof(S, m poisson), "1", "0.3", -1, 0.5, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "Poisson's ratio at small strain"}
+  {"young", KEY_REAL, offsetof(S, m young), "Pa", NULL, 0, 1e15, KEY_LO_OPEN, NULL, "Young's modulus at small strain; every law but mooney_rivlin needs it"}, \
+  {"poisson", KEY_REAL, offsetof(S, m poisson), "1", "0.3", -1, 0.5, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "Poisson's ratio at small strain"}, \
+  {"bulk", KEY_REAL, offsetof(S, m bulk), "Pa", NULL, 0, 1e15, KEY_LO_OPEN, NULL, "bulk modulus of neo_hookean_iso, mooney_rivlin and transversely_isotropic; none: from poisson"}, \
+  {"c10", KEY_REAL, offsetof(S, m c10), "Pa", NULL, -1e15, 1e15, 0, NULL, "first constant of mooney_rivlin"}, \
+  {"c01", KEY_REAL, offsetof(S, m c01), "Pa", NULL, -1e15, 1e15, 0, NULL, "second constant of mooney_rivlin; twice their sum is the shear modulus"}, \
+  {"fibre_stiffness", KEY_REAL, offsetof(S, m fibre_stiffness), "Pa", NULL, 0, 1e15, KEY_LO_OPEN, NULL, "stiffness eta along the fibres of transversely_isotropic"}, \
+  {"fibre", KEY_VEC3, offsetof(S, m fibre), "1", NULL, -1e9, 1e9, 0, NULL, "direction of the fibres of transversely_isotropic, of any length"}
+// clang-format on
 
 #define ROW(key, type, unit, def, lo, hi, flags, choices, help)                                                                    \
   {                                                                                                                                \

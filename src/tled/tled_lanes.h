@@ -9,6 +9,8 @@
 
 /* inlined without question: a vector loop has no calls, and constants handed in (the law) fold away */
 #define INLINE static inline __attribute__((always_inline))
+/* a function of its own with all that it calls inlined into it: the vector loop of one law */
+#define KERNEL static __attribute__((noinline, flatten))
 
 /* x, y, z of a node and a fourth number, as one vector register: corners are loaded and forces added a node at a time, and turned
    into lanes by transposition, which is cheaper than gathers of single numbers */
@@ -83,6 +85,21 @@ INLINE void LaneFibre(const double fibre[], int l, double a[3])
   a[0] = fibre ? fibre[l] : 0.0;
   a[1] = fibre ? fibre[L + l] : 0.0;
   a[2] = fibre ? fibre[2 * L + l] : 0.0;
+}
+
+/* The law with its number known to the compiler. */
+INLINE TLEDLaw KnownLaw(int law, const TLEDLaw *from)
+{
+  TLEDLaw m;
+
+  m.law    = law;
+  m.mu     = from->mu;
+  m.lambda = from->lambda;
+  m.kappa  = from->kappa;
+  m.c10    = from->c10;
+  m.c01    = from->c01;
+  m.eta    = from->eta;
+  return m;
 }
 
 /* partial sums of the block's nodes to its slots, three numbers a node */

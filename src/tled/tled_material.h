@@ -1,91 +1,44 @@
 /* tled_material.h - elastic laws: energy, first Piola-Kirchhoff stress and tangent of one material point, for host and device.
 
-   H = F - I is the displacement gradient, row-major, F the deformation gradient, J = det F, E = (F^T F - I)/2,
-   mu and lambda are Lame's constants [Pa]. Everything is written in H, so that small strains keep their digits. */
+   Notation as in tled_kinematics.h. mu and lambda are Lame's constants [Pa]. */
 #ifndef BY_TLED_MATERIAL_H
 #define BY_TLED_MATERIAL_H
 
-#include "mat3.h"
+#include "tled/tled_isochoric.h"
 
 /* the laws, in the order of TLEDMaterial in tled.h */
-enum { TLED_LAW_NEO_HOOKEAN = 0, TLED_LAW_ST_VENANT_KIRCHHOFF = 1 };
+enum {
+  TLED_LAW_NEO_HOOKEAN = 0,
+  TLED_LAW_ST_VENANT_KIRCHHOFF = 1,
+  TLED_LAW_NEO_HOOKEAN_ISO = 2,
+  TLED_LAW_MOONEY_RIVLIN = 3,
+  TLED_LAW_TRANSVERSE = 4,
+  TLED_LAWS = 5
+};
+
+#define TLED_PRONY_MAX 8 /* terms of a Prony series at most */
 
 /* A law with its constants, as the loops take it. */
 typedef struct {
   int    law;
-  double mu, lambda; /* Lame's constants [Pa] */
+  int    n_prony;                /* terms of its Prony series, 0 = elastic                             */
+  double mu, lambda;             /* Lame's constants [Pa]; lambda of the first two laws only           */
+  double kappa;                  /* bulk modulus [Pa], of the others                                   */
+  double c10, c01;               /* of Mooney and Rivlin [Pa]                                          */
+  double eta;                    /* stiffness along the fibres [Pa]                                    */
+  double alpha[TLED_PRONY_MAX];  /* part of the isochoric stress that relaxes, each term's [1]         */
+  double tau[TLED_PRONY_MAX];    /* in this time [s]                                                   */
 } TLEDLaw;
 
-/* J - 1 = tr H + (sum of principal minors of H) + det H: exact, no cancellation at small strain. */
-BY_HD double TLEDJacobianMinusOne(const double H[9])
-{
-  const double m0 = H[4]*H[8] - H[5]*H[7], m1 = H[0]*H[8] - H[2]*H[6], m2 = H[0]*H[4] - H[1]*H[3];
-  const double det = H[0]*m0 - H[1]*(H[3]*H[8] - H[5]*H[6]) + H[2]*(H[3]*H[7] - H[4]*H[6]);
-
-  return ((H[0] + H[4]) + H[8]) + ((m0 + m1) + m2) + det;
-}
-
-/* |J - 1| up to which TLEDLogSeries() is exact to round-off */
-#define TLED_LOG_REACH 0.3
-
-/* ln(1 + x), |x| <= TLED_LOG_REACH:  2 artanh(s) = 2 s (1 + s^2/3 + s^4/5 + ...), s = x/(2 + x); |s| < 0.177, so the first term left
-   out, s^24/25, is below 4e-20. Branch-free, so that a loop over elements vectorises. */
-BY_HD double TLEDLogSeries(double x)
-{
-  const double s = x / (2.0 + x), q = s*s;
-  double       even = 1.0/23;
-
-  even = 1.0/21 + q*even;
-  even = 1.0/19 + q*even;
-  even = 1.0/17 + q*even;
-  even = 1.0/15 + q*even;
-  even = 1.0/13 + q*even;
-  even = 1.0/11 + q*even;
-  even = 1.0/9 + q*even;
-  even = 1.0/7 + q*even;
-  even = 1.0/5 + q*even;
-  even = 1.0/3 + q*even;
-  return 2.0*s + 2.0*s*q*even;
-}
-
-/* ln J from J - 1 */
-BY_HD double TLEDLogJacobian(double jm1) { return fabs(jm1) <= TLED_LOG_REACH ? TLEDLogSeries(jm1) : log1p(jm1); }
-
-/* F = I + H */
-BY_HD void TLEDDeformationGradient(const double H[9], double F[9])
-{
-  F[0] = 1.0 + H[0]; F[1] = H[1];       F[2] = H[2];
-  F[3] = H[3];       F[4] = 1.0 + H[4]; F[5] = H[5];
-  F[6] = H[6];       F[7] = H[7];       F[8] = 1.0 + H[8];
-}
-
-/* C = cof F = J F^-T */
-BY_HD void TLEDCofactor(const double F[9], double C[9])
-{
-  C[0] = F[4]*F[8] - F[5]*F[7]; C[1] = F[5]*F[6] - F[3]*F[8]; C[2] = F[3]*F[7] - F[4]*F[6];
-  C[3] = F[2]*F[7] - F[1]*F[8]; C[4] = F[0]*F[8] - F[2]*F[6]; C[5] = F[1]*F[6] - F[0]*F[7];
-  C[6] = F[1]*F[5] - F[2]*F[4]; C[7] = F[2]*F[3] - F[0]*F[5]; C[8] = F[0]*F[4] - F[1]*F[3];
-}
-
-/* Green-Lagrange strain E = (H + H^T + H^T H)/2 as xx, yy, zz, xy, yz, xz */
-BY_HD void TLEDGreenStrain(const double H[9], double E[6])
-{
-  E[0] = H[0] + 0.5*(H[0]*H[0] + H[3]*H[3] + H[6]*H[6]);
-  E[1] = H[4] + 0.5*(H[1]*H[1] + H[4]*H[4] + H[7]*H[7]);
-  E[2] = H[8] + 0.5*(H[2]*H[2] + H[5]*H[5] + H[8]*H[8]);
-  E[3] = 0.5*(H[1] + H[3] + H[0]*H[1] + H[3]*H[4] + H[6]*H[7]);
-  E[4] = 0.5*(H[5] + H[7] + H[1]*H[2] + H[4]*H[5] + H[7]*H[8]);
-  E[5] = 0.5*(H[2] + H[6] + H[0]*H[2] + H[3]*H[5] + H[6]*H[8]);
-}
-
-/* W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 [J/m^3], method 3; I1 - 3 = 2 tr E */
+/* W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 [J/m^3], method 3; I1 - 3 = 2 tr H + |H|^2, and
+   tr H - ln J = (J - 1 - ln J) - minors, so that only terms of second order are added */
 BY_HD double TLEDEnergyNeoHookean(const double H[9], double mu, double lambda)
 {
-  const double ln_J = TLEDLogJacobian(TLEDJacobianMinusOne(H));
-  double       E[6];
+  const double jm1 = TLEDJacobianMinusOne(H), ln_J = TLEDLogJacobian(jm1);
+  double       size2 = 0.0;
 
-  TLEDGreenStrain(H, E);
-  return mu*(E[0] + E[1] + E[2]) - mu*ln_J + 0.5*lambda*ln_J*ln_J;
+  for (int k = 0; k < 9; k++) size2 += H[k]*H[k];
+  return mu*(0.5*size2 - TLEDMinors(H) + TLEDLogRemainder(jm1)) + 0.5*lambda*ln_J*ln_J;
 }
 
 /* P = mu (F - F^-T) + lambda ln J F^-T [Pa]; ln_J and inv_J = 1/J are handed in (the loops compute them a vector at a time) */
@@ -137,16 +90,25 @@ BY_HD void TLEDStressStVenantKirchhoff(const double H[9], double mu, double lamb
 /* energy of a law [J/m^3]; a is the unit vector along the fibres, of no effect without them */
 BY_HD double TLEDEnergy(const TLEDLaw *m, const double a[3], const double H[9])
 {
-  (void)a;
-  return m->law == TLED_LAW_NEO_HOOKEAN ? TLEDEnergyNeoHookean(H, m->mu, m->lambda) : TLEDEnergyStVenantKirchhoff(H, m->mu, m->lambda);
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN: return TLEDEnergyNeoHookean(H, m->mu, m->lambda);
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: return TLEDEnergyStVenantKirchhoff(H, m->mu, m->lambda);
+  case TLED_LAW_NEO_HOOKEAN_ISO: return TLEDEnergyNeoHookeanIso(H, m->mu, m->kappa);
+  case TLED_LAW_MOONEY_RIVLIN: return TLEDEnergyMooneyRivlin(H, m->c10, m->c01, m->kappa);
+  default: return TLEDEnergyTransverse(H, a, m->mu, m->eta, m->kappa);
+  }
 }
 
-/* stress of a law [Pa]; ln_J and inv_J are used by the laws that need them */
+/* stress of a law [Pa]; ln_J is used by the first law, inv_J = 1/J by all but the second */
 BY_HD void TLEDStress(const TLEDLaw *m, const double a[3], const double H[9], double ln_J, double inv_J, double P[9])
 {
-  (void)a;
-  if (m->law == TLED_LAW_NEO_HOOKEAN) TLEDStressNeoHookean(H, ln_J, inv_J, m->mu, m->lambda, P);
-  else TLEDStressStVenantKirchhoff(H, m->mu, m->lambda, P);
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN: TLEDStressNeoHookean(H, ln_J, inv_J, m->mu, m->lambda, P); break;
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: TLEDStressStVenantKirchhoff(H, m->mu, m->lambda, P); break;
+  case TLED_LAW_NEO_HOOKEAN_ISO: TLEDStressNeoHookeanIso(H, inv_J, m->mu, m->kappa, P); break;
+  case TLED_LAW_MOONEY_RIVLIN: TLEDStressMooneyRivlin(H, inv_J, m->c10, m->c01, m->kappa, P); break;
+  default: TLEDStressTransverse(H, a, inv_J, m->mu, m->eta, m->kappa, P); break;
+  }
 }
 
 /* Differential of P in the direction dF: dP = mu dF + (mu - lambda ln J) F^-T dF^T F^-T + lambda (F^-T : dF) F^-T */
@@ -197,32 +159,49 @@ BY_HD void TLEDStressDifferentialStVenantKirchhoff(const double H[9], const doub
 /* differential of the stress of a law in the direction dF */
 BY_HD void TLEDStressDifferential(const TLEDLaw *m, const double a[3], const double H[9], const double dF[9], double dP[9])
 {
-  (void)a;
-  if (m->law == TLED_LAW_NEO_HOOKEAN) TLEDStressDifferentialNeoHookean(H, dF, m->mu, m->lambda, dP);
-  else TLEDStressDifferentialStVenantKirchhoff(H, dF, m->mu, m->lambda, dP);
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN: TLEDStressDifferentialNeoHookean(H, dF, m->mu, m->lambda, dP); break;
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: TLEDStressDifferentialStVenantKirchhoff(H, dF, m->mu, m->lambda, dP); break;
+  case TLED_LAW_NEO_HOOKEAN_ISO: TLEDStressDifferentialNeoHookeanIso(H, dF, m->mu, m->kappa, dP); break;
+  case TLED_LAW_MOONEY_RIVLIN: TLEDStressDifferentialMooneyRivlin(H, dF, m->c10, m->c01, m->kappa, dP); break;
+  default: TLEDStressDifferentialTransverse(H, a, dF, m->mu, m->eta, m->kappa, dP); break;
+  }
 }
 
-/* Poisson's ratio at small strain */
-BY_HD double TLEDPoisson(const TLEDLaw *m) { return 0.5*m->lambda / (m->lambda + m->mu); }
+/* Lame's first constant at small strain [Pa], without fibres */
+BY_HD double TLEDLambda(const TLEDLaw *m)
+{
+  return m->law == TLED_LAW_NEO_HOOKEAN || m->law == TLED_LAW_ST_VENANT_KIRCHHOFF ? m->lambda : m->kappa - (2.0/3)*m->mu;
+}
+
+/* Poisson's ratio at small strain, without fibres */
+BY_HD double TLEDPoisson(const TLEDLaw *m)
+{
+  const double lambda = TLEDLambda(m);
+
+  return 0.5*lambda / (lambda + m->mu);
+}
 
 /* The law with the volumetric stiffness of Poisson's ratio 1/3 at most, lambda' = min(lambda, 2 mu), in place of lambda: what is
    taken out, lambda - lambda' [Pa], see TLEDElementSoften(). */
 BY_HD double TLEDExcessBulk(const TLEDLaw *m)
 {
-  const double most = 2.0*m->mu;
+  const double excess = TLEDLambda(m) - 2.0*m->mu;
 
-  return m->lambda > most ? m->lambda - most : 0.0;
+  return excess > 0.0 ? excess : 0.0;
 }
 
-/* B with dP = ... + lambda (B : dF) B, the volumetric part of the differential: F^-T, or F in the law of St Venant and Kirchhoff */
+/* B with dP = ... + lambda (B : dF) B, the volumetric part of the differential: F^-T; F in the law of St Venant and Kirchhoff; and
+   sqrt(J (2J - 1)) F^-T in the laws with kappa/2 (J - 1)^2 */
 BY_HD void TLEDBulkDirection(const TLEDLaw *m, const double H[9], double B[9])
 {
-  const double inv_J = 1.0 / (1.0 + TLEDJacobianMinusOne(H));
-  double       F[9];
+  const double J = 1.0 + TLEDJacobianMinusOne(H), part = J*(2.0*J - 1.0);
+  double       F[9], factor = 1.0 / J;
 
   TLEDDeformationGradient(H, F);
   TLEDCofactor(F, B);
-  for (int k = 0; k < 9; k++) B[k] = m->law == TLED_LAW_ST_VENANT_KIRCHHOFF ? F[k] : inv_J*B[k];
+  if (m->law >= TLED_LAW_NEO_HOOKEAN_ISO) factor *= part > 0.0 ? sqrt(part) : 0.0;
+  for (int k = 0; k < 9; k++) B[k] = m->law == TLED_LAW_ST_VENANT_KIRCHHOFF ? F[k] : factor*B[k];
 }
 
 #endif

@@ -34,21 +34,68 @@ static PetscErrorCode MaterialKey(TLED tled, PetscInt k, const char word[], char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* law of a material; what its law needs must be given */
-static PetscErrorCode MakeLaw(TLED tled, PetscInt k)
+/* refuse a value of a key that the material's law does not know */
+static PetscErrorCode Refuse(TLED tled, PetscInt k, const char word[], PetscBool given, const char law[])
 {
-  const TLEDMaterialParams *p   = &tled->materials[k];
-  TLEDLaw                  *law = &tled->laws[k];
+  char key[3 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  if (!given) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MaterialKey(tled, k, word, key, sizeof key));
+  PetscFunctionReturn(InputError(key, "is given, but the material is not %s\n  leave it out or choose that material", law));
+}
+
+/* a value that a law needs must be given */
+static PetscErrorCode Need(TLED tled, PetscInt k, const char word[], PetscBool given, const char what[])
+{
+  char key[3 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  if (given) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MaterialKey(tled, k, word, key, sizeof key));
+  PetscFunctionReturn(InputError(key, "is missing\n  expected %s", what));
+}
+
+/* what the law of material k needs is given, and nothing else */
+static PetscErrorCode CheckParams(TLED tled, PetscInt k)
+{
+  const TLEDMaterialParams *p       = &tled->materials[k];
+  const PetscBool           mooney  = (PetscBool)(p->material == TLED_MATERIAL_MOONEY_RIVLIN);
+  const PetscBool           fibrous = (PetscBool)(p->material == TLED_MATERIAL_TRANSVERSELY_ISOTROPIC);
+  const PetscBool           split   = (PetscBool)(p->material >= TLED_MATERIAL_NEO_HOOKEAN_ISO);
+  const PetscBool           along   = (PetscBool)(Norm3(p->fibre) > 0.0);
   char                      key[3 * BY_NAME_MAX];
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(law, sizeof *law));
-  PetscCall(MaterialKey(tled, k, "young", key, sizeof key));
-  if (!(p->young > 0.0)) PetscFunctionReturn(InputError(key, "is missing\n  expected a finite number > 0 [Pa]: Young's modulus at small strain"));
-  law->law    = p->material == TLED_MATERIAL_NEO_HOOKEAN ? TLED_LAW_NEO_HOOKEAN : TLED_LAW_ST_VENANT_KIRCHHOFF;
-  law->mu     = p->young / (2.0 * (1.0 + p->poisson));
-  law->lambda = p->young * p->poisson / ((1.0 + p->poisson) * (1.0 - 2.0 * p->poisson));
+  if (!mooney) ByCall(Need(tled, k, "young", (PetscBool)(p->young > 0.0), "a finite number > 0 [Pa]: Young's modulus at small strain"));
+  if (mooney) {
+    ByCall(Refuse(tled, k, "young", (PetscBool)(p->young > 0.0), "one with Young's modulus: mooney_rivlin has c10 and c01"));
+    ByCall(Need(tled, k, "c10", (PetscBool)(p->c10 != 0.0 || p->c01 != 0.0), "the constants c10 and c01 of mooney_rivlin [Pa]"));
+    PetscCall(MaterialKey(tled, k, "c10", key, sizeof key));
+    if (!(p->c10 + p->c01 > 0.0))
+      PetscFunctionReturn(InputError(key, "and c01 add up to %g Pa\n  expected a sum > 0: twice the sum is the shear modulus",
+                                     (double)(p->c10 + p->c01)));
+  } else ByCall(Refuse(tled, k, p->c10 != 0.0 ? "c10" : "c01", (PetscBool)(p->c10 != 0.0 || p->c01 != 0.0), "mooney_rivlin"));
+  if (!split) ByCall(Refuse(tled, k, "bulk", (PetscBool)(p->bulk > 0.0), "neo_hookean_iso, mooney_rivlin or transversely_isotropic"));
+  if (fibrous) {
+    ByCall(Need(tled, k, "fibre_stiffness", (PetscBool)(p->fibre_stiffness > 0.0), "a finite number > 0 [Pa]: the fibres' stiffness"));
+    ByCall(Need(tled, k, "fibre", along, "a direction [x, y, z] that is not zero"));
+  } else {
+    ByCall(Refuse(tled, k, "fibre_stiffness", (PetscBool)(p->fibre_stiffness > 0.0), "transversely_isotropic"));
+    ByCall(Refuse(tled, k, "fibre", along, "transversely_isotropic"));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* law of a material whose parameters are checked */
+static void MakeLaw(const TLEDMaterialParams *p, TLEDLaw *law)
+{
+  law->law = p->material;
+  law->mu  = p->young / (2.0 * (1.0 + p->poisson));
+  if (law->law == TLED_LAW_MOONEY_RIVLIN) law->c10 = p->c10, law->c01 = p->c01, law->mu = 2.0 * (p->c10 + p->c01);
+  if (law->law < TLED_LAW_NEO_HOOKEAN_ISO) law->lambda = 2.0 * law->mu * p->poisson / (1.0 - 2.0 * p->poisson);
+  else law->kappa = p->bulk > 0.0 ? p->bulk : 2.0 * law->mu * (1.0 + p->poisson) / (3.0 * (1.0 - 2.0 * p->poisson));
+  law->eta = p->fibre_stiffness;
 }
 
 /* the elements of the volumes that material k names */
@@ -80,7 +127,7 @@ static PetscErrorCode AssignVolumes(TLED tled, PetscInt k)
 /*
   TLEDMaterialsSetUp_Private - laws of all materials, and mesh->material of the mesh as read
 
-  Errors: BY_ERR_INPUT, reported: a parameter that a law needs is missing, a volume that the mesh does not have, an element in two
+  Errors: BY_ERR_INPUT, reported: a parameter that a law needs is missing or one that it does not know is given, a volume that the mesh does not have, an element in two
   materials
 */
 PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled)
@@ -90,10 +137,29 @@ PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled)
   tled->materials[0] = tled->params.elastic;
   PetscCall(PetscCalloc1(tled->mesh.n_tets, &tled->mesh.material));
   for (PetscInt k = 0; k < tled->n_materials; k++) {
-    ByCall(MakeLaw(tled, k));
+    ByCall(CheckParams(tled, k));
+    MakeLaw(&tled->materials[k], &tled->laws[k]);
     if (k) ByCall(AssignVolumes(tled, k));
   }
   tled->loops.laws   = tled->laws;
   tled->loops.n_laws = (int)tled->n_materials;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* unit vectors along the fibres of each lane, for the laws that have them */
+PetscErrorCode TLEDFibresSetUp_Private(TLED tled)
+{
+  TLEDBlocks *b    = &tled->blocks;
+  PetscBool   some = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < tled->n_materials; k++) some = (PetscBool)(some || tled->laws[k].law == TLED_LAW_TRANSVERSE);
+  if (!some) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(3 * b->n_packs * TLED_LANES, &b->fibre));
+  for (int l = 0; l < b->n_packs * TLED_LANES; l++) {
+    const int        pack  = l / TLED_LANES;
+    const PetscReal *fibre = tled->materials[b->material[pack]].fibre, size = Norm3(fibre);
+    for (int k = 0; k < 3 && size > 0.0; k++) b->fibre[(3 * pack + k) * TLED_LANES + l % TLED_LANES] = fibre[k] / size;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -84,12 +84,12 @@ INLINE void LaneGradient(const Pack *p, int l, double H[9])
   H[8] = p->H[8][l];
 }
 
+/* forces of the lanes, f[3 a + i] */
 INLINE void PackForces(int law, const TLEDLaw *material, const Pack *p, const double fibre[], const double G[], const double V0[],
                        double f[12][L])
 {
-  TLEDLaw m = *material;
+  const TLEDLaw m = KnownLaw(law, material);
 
-  m.law = law; /* known to the compiler */
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
     double H[9], P[9], a[3];
@@ -97,6 +97,32 @@ INLINE void PackForces(int law, const TLEDLaw *material, const Pack *p, const do
     LaneFibre(fibre, l, a);
     TLEDStress(&m, a, H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), P);
     StoreForces(P, G, V0, l, f);
+  }
+}
+
+#define FORCES_OF(Law, number)                                                                                                     \
+  KERNEL void Forces##Law(const TLEDLaw *m, const Pack *p, const double fibre[], const double G[], const double V0[], double f[12][L]) \
+  {                                                                                                                                \
+    PackForces(number, m, p, fibre, G, V0, f);                                                                                     \
+  }
+FORCES_OF(NeoHookean, TLED_LAW_NEO_HOOKEAN)
+FORCES_OF(StVenantKirchhoff, TLED_LAW_ST_VENANT_KIRCHHOFF)
+FORCES_OF(NeoHookeanIso, TLED_LAW_NEO_HOOKEAN_ISO)
+FORCES_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
+FORCES_OF(Transverse, TLED_LAW_TRANSVERSE)
+
+/* the same by the law of the pack */
+INLINE void PackForcesLaw(const TLEDLaw *m, Pack *p, const double fibre[], const double G[], const double V0[], double f[12][L])
+{
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN:
+    PackLogarithms(p->jm1, p->ln_J);
+    ForcesNeoHookean(m, p, NULL, G, V0, f);
+    break;
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: ForcesStVenantKirchhoff(m, p, NULL, G, V0, f); break;
+  case TLED_LAW_NEO_HOOKEAN_ISO: ForcesNeoHookeanIso(m, p, NULL, G, V0, f); break;
+  case TLED_LAW_MOONEY_RIVLIN: ForcesMooneyRivlin(m, p, NULL, G, V0, f); break;
+  default: ForcesTransverse(m, p, fibre, G, V0, f); break;
   }
 }
 
@@ -129,13 +155,7 @@ void TLEDForcesT4_OpenMP(const TLEDLoops *w, const double u[])
       const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack, *fibre = b->fibre ? b->fibre + 3 * L * pack : NULL;
       const TLEDLaw *m = &w->laws[b->material[pack]];
       broken += PackGradients(local, G, &s, &p);
-      switch (m->law) {
-      case TLED_LAW_NEO_HOOKEAN:
-        PackLogarithms(p.jm1, p.ln_J);
-        PackForces(TLED_LAW_NEO_HOOKEAN, m, &p, NULL, G, V0, f);
-        break;
-      default: PackForces(TLED_LAW_ST_VENANT_KIRCHHOFF, m, &p, fibre, G, V0, f); break;
-      }
+      PackForcesLaw(m, &p, fibre, G, V0, f);
       AddForces(local, f, &s);
     }
     StoreBlock(b, block, &s, w->partial);
@@ -208,10 +228,8 @@ static void PackSum(const int local[], const double value[], double factor, doub
 INLINE void PackAverage(int law, int forces, const TLEDLaw *material, const Pack *p, const double jbar[], const double nodal[],
                         const double fibre[], const double G[], const double V0[], double pbar[], double f[12][L])
 {
-  double  ln_Jbar[L] = {0.0};
-  TLEDLaw m          = *material;
-
-  m.law = law; /* known to the compiler */
+  double        ln_Jbar[L] = {0.0};
+  const TLEDLaw m          = KnownLaw(law, material);
 
   if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(jbar, ln_Jbar);
 #pragma GCC ivdep
@@ -230,13 +248,46 @@ INLINE void PackAverage(int law, int forces, const TLEDLaw *material, const Pack
   }
 }
 
-/* the same with the law known to the compiler */
-INLINE void PackAverageLaw(int forces, const TLEDLaw *m, const Pack *p, const double jbar[], const double nodal[], const double fibre[],
-                           const double G[], const double V0[], double pbar[], double f[12][L])
+#define AVERAGE_OF(Law, number)                                                                                                    \
+  KERNEL void AverageForces##Law(const TLEDLaw *m, const Pack *p, const double jbar[], const double nodal[], const double fibre[], \
+                                 const double G[], const double V0[], double f[12][L])                                             \
+  {                                                                                                                                \
+    PackAverage(number, 1, m, p, jbar, nodal, fibre, G, V0, NULL, f);                                                              \
+  }                                                                                                                                \
+  KERNEL void AveragePressure##Law(const TLEDLaw *m, const Pack *p, const double jbar[], const double fibre[], const double V0[],  \
+                                   double pbar[])                                                                                  \
+  {                                                                                                                                \
+    PackAverage(number, 0, m, p, jbar, NULL, fibre, NULL, V0, pbar, NULL);                                                         \
+  }
+AVERAGE_OF(NeoHookean, TLED_LAW_NEO_HOOKEAN)
+AVERAGE_OF(StVenantKirchhoff, TLED_LAW_ST_VENANT_KIRCHHOFF)
+AVERAGE_OF(NeoHookeanIso, TLED_LAW_NEO_HOOKEAN_ISO)
+AVERAGE_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
+AVERAGE_OF(Transverse, TLED_LAW_TRANSVERSE)
+
+/* the forces by the law of the pack */
+INLINE void AverageForcesLaw(const TLEDLaw *m, const Pack *p, const double jbar[], const double nodal[], const double fibre[],
+                             const double G[], const double V0[], double f[12][L])
 {
   switch (m->law) {
-  case TLED_LAW_NEO_HOOKEAN: PackAverage(TLED_LAW_NEO_HOOKEAN, forces, m, p, jbar, nodal, NULL, G, V0, pbar, f); break;
-  default: PackAverage(TLED_LAW_ST_VENANT_KIRCHHOFF, forces, m, p, jbar, nodal, fibre, G, V0, pbar, f); break;
+  case TLED_LAW_NEO_HOOKEAN: AverageForcesNeoHookean(m, p, jbar, nodal, NULL, G, V0, f); break;
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: AverageForcesStVenantKirchhoff(m, p, jbar, nodal, NULL, G, V0, f); break;
+  case TLED_LAW_NEO_HOOKEAN_ISO: AverageForcesNeoHookeanIso(m, p, jbar, nodal, NULL, G, V0, f); break;
+  case TLED_LAW_MOONEY_RIVLIN: AverageForcesMooneyRivlin(m, p, jbar, nodal, NULL, G, V0, f); break;
+  default: AverageForcesTransverse(m, p, jbar, nodal, fibre, G, V0, f); break;
+  }
+}
+
+/* the pressures by the law of the pack */
+INLINE void AveragePressureLaw(const TLEDLaw *m, const Pack *p, const double jbar[], const double fibre[], const double V0[],
+                               double pbar[])
+{
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN: AveragePressureNeoHookean(m, p, jbar, NULL, V0, pbar); break;
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: AveragePressureStVenantKirchhoff(m, p, jbar, NULL, V0, pbar); break;
+  case TLED_LAW_NEO_HOOKEAN_ISO: AveragePressureNeoHookeanIso(m, p, jbar, NULL, V0, pbar); break;
+  case TLED_LAW_MOONEY_RIVLIN: AveragePressureMooneyRivlin(m, p, jbar, NULL, V0, pbar); break;
+  default: AveragePressureTransverse(m, p, jbar, fibre, V0, pbar); break;
   }
 }
 
@@ -262,10 +313,10 @@ INLINE void PassAverage(int forces, const TLEDLoops *w, const double u[])
       PackSum(local, s.value[0], 0.25, jbar);
       if (forces) {
         PackSum(local, s.value[1], 1.0, nodal);
-        PackAverageLaw(1, m, &p, jbar, nodal, fibre, G, V0, pbar, f);
+        AverageForcesLaw(m, &p, jbar, nodal, fibre, G, V0, f);
         AddForces(local, f, &s);
       } else {
-        PackAverageLaw(0, m, &p, jbar, nodal, fibre, G, V0, pbar, f);
+        AveragePressureLaw(m, &p, jbar, fibre, V0, pbar);
         AddValues(local, pbar, &s);
       }
     }

@@ -1,4 +1,4 @@
-/* Forces of a whole mesh: patch test, rigid motion, gradient of the energy, tangent; for both elements and both laws. */
+/* Forces of a whole mesh: patch test, rigid motion, gradient of the energy, tangent; for both elements and all laws. */
 #include "unit/tled/body.h"
 #include "unit/tled/patch_reference.h"
 
@@ -18,13 +18,27 @@ static void Wavy(const PetscReal X[3], PetscReal u[3])
   u[2] = 0.04 * sin(4 * X[2] + X[0] * X[1]) + 0.03 * X[2];
 }
 
+/* the reference's material of a law: mu and lambda or kappa are those of E 3 MPa, nu 0.3 */
+static void Material(int law, TLEDMaterialParams *p)
+{
+  const TLEDLaw *m = ReferenceLaw(law);
+
+  p->material        = law;
+  p->young           = law == TLED_LAW_MOONEY_RIVLIN ? 0.0 : 2.0 * reference_mu * 1.3;
+  p->c10             = m->c10;
+  p->c01             = m->c01;
+  p->fibre_stiffness = m->eta;
+  p->fibre[0]        = law == TLED_LAW_TRANSVERSE ? 1.0 : 0.0;
+  p->fibre[1]        = 0.35 * p->fibre[0];
+  p->fibre[2]        = 0.2 * p->fibre[0];
+}
+
 static TLED Cube(int law, int element, TLEDParams **p)
 {
   TLED tled = NewBody("tests/meshes/cube_h1.msh", p);
 
-  (*p)->elastic.material = law;
+  Material(law, &(*p)->elastic);
   (*p)->element  = element;
-  (*p)->elastic.young    = 2.0 * reference_mu * 1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
   assert_petsc(TLEDSetUp(tled));
   return tled;
 }
@@ -33,7 +47,7 @@ static TLED Cube(int law, int element, TLEDParams **p)
 static void PatchTest_GivesTheUniformStress(void **state)
 {
   (void)state;
-  for (int law = 0; law < 2; law++) {
+  for (int law = 0; law < TLED_LAWS; law++) {
     for (int element = TLED_ELEMENT_T4; element <= TLED_ELEMENT_ANP; element++) {
       TLEDParams      *p;
       TLED             tled = Cube(law, element, &p);
@@ -48,7 +62,7 @@ static void PatchTest_GivesTheUniformStress(void **state)
       assert_petsc(TLEDGetSize(tled, &n, NULL));
       assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
       assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &n_tri, &tri));
-      for (int i = 0; i < 5; i++) {
+      for (int i = 0; i < PATCH_STATES; i++) {
         const PatchReference *r        = &patch_reference[law][i];
         double               *expected = calloc(3 * (size_t)n, sizeof *expected);
         map                            = r->F;
@@ -85,7 +99,7 @@ static void RigidMotion_GivesNoForce(void **state)
   Q[0] = Q[8] = cos(2.1), Q[2] = sin(2.1), Q[4] = 1.0, Q[6] = -sin(2.1);
   (void)state;
   map = Q;
-  for (int law = 0; law < 2; law++) {
+  for (int law = 0; law < TLED_LAWS; law++) {
     for (int element = TLED_ELEMENT_T4; element <= TLED_ELEMENT_ANP; element++) {
       TLEDParams *p;
       TLED        tled = Cube(law, element, &p);
@@ -112,7 +126,7 @@ static void RigidMotion_GivesNoForce(void **state)
 static void ForceAndTangent_AreDerivatives(void **state)
 {
   (void)state;
-  for (int law = 0; law < 2; law++) {
+  for (int law = 0; law < TLED_LAWS; law++) {
     for (int element = TLED_ELEMENT_T4; element <= TLED_ELEMENT_ANP; element++) {
       const PetscReal eps = 1e-6;
       TLEDParams     *p;
