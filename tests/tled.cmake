@@ -24,3 +24,7 @@ set_tests_properties(backend.tled_cuda PROPERTIES LABELS "backend;cuda" SKIP_RET
 # the reader of meshes; what PETSc's reader loses when it gives up is not ours
 byssus_test(fuzz/test_tled_mesh base tled)
 set_property(TEST fuzz.tled_mesh APPEND PROPERTY ENVIRONMENT "ASAN_OPTIONS=detect_leaks=0")
+
+# the implicit solver and natural frequencies; 77 = built without SLEPc
+byssus_test(unit/tled/test_modes base tled)
+set_tests_properties(unit.tled.modes PROPERTIES SKIP_RETURN_CODE 77)

@@ -17,4 +17,4 @@ set_source_files_properties(src/tled/tled_openmp.c PROPERTIES COMPILE_OPTIONS "-
 add_executable(bench.solid EXCLUDE_FROM_ALL bench/bench_solid.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:tled>)
 target_link_libraries(bench.solid PRIVATE byssus_flags)
 # the implicit solver
-target_sources(tled PRIVATE src/tled/tled_implicit.c src/tled/tled_static.c src/tled/tled_newmark.c)
+target_sources(tled PRIVATE src/tled/tled_implicit.c src/tled/tled_static.c src/tled/tled_newmark.c src/tled/tled_modes.c)
