@@ -9,6 +9,7 @@ byssus_test(unit/tled/test_mass base tled)
 byssus_test(unit/tled/test_relax base tled)
 byssus_test(unit/tled/test_mesh base tled)
 byssus_test(unit/tled/test_t10 base tled)
+byssus_test(unit/tled/test_t10_body base tled)
 
 # in time, against another code; prints the table of docs/verification/solid-slice.md
 byssus_test(convergence/test_tled_reference base tled)

@@ -1,5 +1,6 @@
 /* tled.c - the life of a body: Create, SetFromOptions, SetUp, View, Destroy, and what it lends. */
 #include "tled/tled_impl.h"
+#include "tled/tled_t10.h"
 #include <string.h>
 
 PetscClassId  TLED_CLASSID;
@@ -177,17 +178,16 @@ static PetscErrorCode CreateVectors(TLED tled)
 @*/
 PetscErrorCode TLEDSetUp(TLED tled)
 {
-  char key[2 * BY_NAME_MAX];
+  static const int n_points[] = {TLED_T10_POINTS, TLED_T10_POINTS_FINE}; /* in the order of TLEDQuadrature */
+  char             key[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
   PetscCheck(!tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() was called before");
   PetscCall(PetscSNPrintf(key, sizeof key, "%s.mesh", ((PetscObject)tled)->name));
   ByCall(TLEDMeshRead_Private(key, &tled->params, &tled->mesh));
-  if (tled->mesh.n_corners != 4)
-    PetscFunctionReturn(InputError(key, "holds a second-order (10-node) tetrahedron\n  expected a mesh of first-order (4-node) tetrahedra only"));
   ByCall(TLEDMaterialsSetUp_Private(tled));
-  PetscCall(TLEDElementPick_Private(tled));
-  PetscCall(TLEDBlocksCreate_Private(&tled->mesh, 1, &tled->blocks));
+  ByCall(TLEDElementPick_Private(tled));
+  PetscCall(TLEDBlocksCreate_Private(&tled->mesh, tled->mesh.n_corners == 4 ? 1 : n_points[tled->params.quadrature], &tled->blocks));
   PetscCall(TLEDFibresSetUp_Private(tled));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(TLEDConstraintsSetUp_Private(tled));

@@ -15,7 +15,8 @@ typedef enum {
   TLED_MATERIAL_MOONEY_RIVLIN,
   TLED_MATERIAL_TRANSVERSELY_ISOTROPIC
 } TLEDMaterial;
-typedef enum { TLED_ELEMENT_AUTO, TLED_ELEMENT_T4, TLED_ELEMENT_ANP } TLEDElement;
+typedef enum { TLED_ELEMENT_AUTO, TLED_ELEMENT_T4, TLED_ELEMENT_ANP, TLED_ELEMENT_T10 } TLEDElement;
+typedef enum { TLED_QUADRATURE_4, TLED_QUADRATURE_14 } TLEDQuadrature;
 
 /* An elastic material; TLEDMaterialKeys[] (tled_keys.c) declares each member. The body's own one is TLEDParams.elastic. */
 typedef struct {
@@ -46,7 +47,8 @@ typedef struct {
   Names     prescribed;               /* physical groups moved                                               */
   Names     constraints;              /* supports, a section each (TLEDConstraintParams)                     */
   Names     wetted;                   /* surface groups in contact with fluid; empty = whole boundary        */
-  int       element;                  /* TLEDElement; auto = anp above nu 0.4, else t4                        */
+  int       element;   /* TLEDElement; auto = t10 on a second-order mesh, else anp above nu 0.4, else t4 */
+  int       quadrature; /* TLEDQuadrature: integration points of t10                                  */
 } TLEDParams;
 
 typedef enum { TLED_CONSTRAINT_FIXED, TLED_CONSTRAINT_SYMMETRY, TLED_CONSTRAINT_MOTION } TLEDConstraintKind;

@@ -1,6 +1,7 @@
 /* tled_element.c - the kinds of elements, which of them a body has, and one integration point of an element for the loops that are
    not part of a step. */
 #include "tled/tled_impl.h"
+#include "tled/tled_t10.h"
 
 /* linear tetrahedra: the gradients of nodes 1 to 3 are stored, that of node 0 is minus their sum */
 static void PointLinear(const TLEDBlocks *b, int l, int point, double G[], double *V0)
@@ -13,17 +14,48 @@ static void PointLinear(const TLEDBlocks *b, int l, int point, double G[], doubl
   *V0 = b->V0[l];
 }
 
+/* ten-node tetrahedra: Jinv is stored, and the weight times the Jacobian as volume of the point */
+static void PointQuadratic(const TLEDBlocks *b, int l, int point, double G[], double *V0)
+{
+  const int place = (b->n_points * (l / TLED_LANES) + point) * TLED_LANES, lane = l % TLED_LANES;
+  double    L[4], Jinv[9];
+
+  (void)TLEDQuadratureT10(b->n_points, point, L);
+  for (int k = 0; k < 9; k++) Jinv[k] = b->G[9 * place + k * TLED_LANES + lane];
+  TLEDGradientsT10(L, Jinv, G);
+  *V0 = b->V0[place + lane];
+}
+
 const TLEDElementOps TLEDElementT4  = {"t4", 4, 0, TLEDForcesT4_OpenMP, PointLinear};
 const TLEDElementOps TLEDElementANP = {"anp", 4, 1, TLEDForcesANP_OpenMP, PointLinear};
+const TLEDElementOps TLEDElementT10 = {"t10", 10, 0, TLEDForcesT10_OpenMP, PointQuadratic};
 
-/* loops->ops from the key `element`; the laws are known */
+/*
+  TLEDElementPick_Private - loops->ops from the key `element`, the laws and the mesh, which are known
+
+  Errors: BY_ERR_INPUT, reported: element and order of the mesh disagree
+*/
 PetscErrorCode TLEDElementPick_Private(TLED tled)
 {
-  PetscBool soft = PETSC_FALSE; /* a nearly incompressible material */
+  static const char *const names[]   = {"auto", "t4", "anp", "t10"};
+  const PetscBool          quadratic = (PetscBool)(tled->mesh.n_corners == 10);
+  const int                wanted    = tled->params.element;
+  PetscBool                soft      = PETSC_FALSE; /* a nearly incompressible material */
+  char                     key[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(key, sizeof key, "%s.element", ((PetscObject)tled)->name));
+  if (quadratic && wanted != TLED_ELEMENT_AUTO && wanted != TLED_ELEMENT_T10)
+    PetscFunctionReturn(InputError(key,
+                                   "is %s, but the mesh is of second order (10-node tetrahedra)\n"
+                                   "  expected t10 or auto, or a mesh of first order (gmsh -3 -order 1)",
+                                   names[wanted]));
+  if (!quadratic && wanted == TLED_ELEMENT_T10)
+    PetscFunctionReturn(InputError(key, "is t10, but the mesh is of first order (4-node tetrahedra)\n"
+                                        "  expected a mesh of second order: gmsh body.msh -3 -order 2 -o body2.msh"));
   for (PetscInt k = 0; k < tled->n_materials; k++) soft = (PetscBool)(soft || TLEDPoisson(&tled->laws[k]) > 0.4);
-  if (tled->params.element == TLED_ELEMENT_ANP || (tled->params.element == TLED_ELEMENT_AUTO && soft))
+  if (quadratic) tled->loops.ops = &TLEDElementT10;
+  else if (tled->params.element == TLED_ELEMENT_ANP || (tled->params.element == TLED_ELEMENT_AUTO && soft))
     tled->loops.ops = &TLEDElementANP;
   else tled->loops.ops = &TLEDElementT4;
   tled->loops.anp = tled->loops.ops->averaged;

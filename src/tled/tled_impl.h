@@ -14,6 +14,7 @@
 #define TLED_BLOCK_NODES     256 /* nodes of a block at most                                                       */
 #define TLED_CHUNK           128 /* nodes whose contributions to a sum are added first, for any number of threads  */
 #define TLED_THREAD_BLOCKS   12  /* blocks that make one more thread worth its barriers, also on a busy machine       */
+#define TLED_THREAD_BLOCKS_T10 6 /* the same of ten-node elements                                                  */
 #define TLED_MATERIALS       (BY_NAMES_MAX + 1) /* of a body at most: its own and the further ones                 */
 #define TLED_CORNERS_MAX     10  /* nodes of an element at most                                                    */
 #define TLED_GROUPS_MAX      62  /* named physical groups of a mesh: bits of a 64-bit number                       */
@@ -209,7 +210,7 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
 PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled);
 PetscErrorCode TLEDFibresSetUp_Private(TLED tled); /* blocks.fibre */
 /* tled_element.c */
-extern const TLEDElementOps TLEDElementT4, TLEDElementANP;
+extern const TLEDElementOps TLEDElementT4, TLEDElementANP, TLEDElementT10;
 PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */
 void           TLEDPointAt_Private(const TLEDLoops *loops, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p);
 /* tled_blocks.c */
@@ -223,6 +224,8 @@ void TLEDForcesT4_OpenMP(const TLEDLoops *loops, const double u[]);
 void TLEDForcesANP_OpenMP(const TLEDLoops *loops, const double u[]);
 void TLEDNodalVolumes_OpenMP(const TLEDLoops *loops, const double u[]); /* fills loops->nodal (anp) */
 int  TLEDElementsBroken_OpenMP(const TLEDLoops *loops);
+/* tled_openmp_t10.c */
+void TLEDForcesT10_OpenMP(const TLEDLoops *loops, const double u[]);
 /* tled_energy.c */
 PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *energy, PetscReal *volume, PetscReal stretch[2]);
 PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscReal time);

@@ -3,7 +3,8 @@
 
 static const char *const materials[] = {"neo_hookean", "st_venant_kirchhoff", "neo_hookean_iso", "mooney_rivlin", "transversely_isotropic",
                                         NULL};                      /* in the order of TLEDMaterial */
-static const char *const elements[]  = {"auto", "t4", "anp", NULL}; /* in the order of TLEDElement  */
+static const char *const elements[]  = {"auto", "t4", "anp", "t10", NULL}; /* in the order of TLEDElement */
+static const char *const rules[]     = {"4", "14", NULL}; /* in the order of TLEDQuadrature */
 
 /* the keys of a material, for a struct S in which it is the member m (with its dot, or nothing) */
 // clang-format off
@@ -29,7 +30,9 @@ const Key TLEDKeys[] = {
     ELASTIC(TLEDParams, elastic.),
     ROW(materials, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "further materials, a section each"),
     ROW(element, KEY_CHOICE, "", "auto", 0, 0, 0, elements,
-        "t4: constant strain; anp: average nodal pressure, does not lock; auto: anp when a material has poisson above 0.4"),
+        "t4: constant strain; anp: average nodal pressure, does not lock; t10: quadratic, on a mesh of second order; auto: t10 on such a mesh, else "
+        "anp when a material has poisson above 0.4, else t4"),
+    ROW(quadrature, KEY_CHOICE, "", "4", 0, 0, 0, rules, "integration points of a t10 element: 4 (degree 2) or 14 (degree 5)"),
     ROW(fixed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes are held"),
     ROW(prescribed, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "physical groups whose nodes move with prescribed_velocity from time 0 on"),
     ROW(prescribed_velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "velocity of the groups in prescribed"),

@@ -1,5 +1,6 @@
 /* tled_mass.c - the lumped mass, the largest stable step of each element alone, and mass added to elements whose step is short. */
 #include "tled/tled_impl.h"
+#include "tled/tled_t10.h"
 #include <petscblaslapack.h>
 
 #define MOST_NODES 10
@@ -11,7 +12,7 @@
 #define NEARLY 0.9  /* of the step asked for: all elements come closer                                                */
 #define PART 1e-3   /* of the largest energy of an element in the highest mode: it takes part                          */
 
-/* Volume [m^3] and masses of an element's nodes [kg]: equal shares. */
+/* Volume [m^3] and masses of an element's nodes [kg]: equal shares, and by diagonal scaling for ten nodes. */
 static double ElementMasses(TLED tled, int l, double m[])
 {
   const TLEDBlocks *b       = &tled->blocks;
@@ -22,7 +23,13 @@ static double ElementMasses(TLED tled, int l, double m[])
     tled->loops.ops->point(b, l, point, G, &V0);
     volume += V0;
   }
-  for (PetscInt a = 0; a < tled->mesh.n_corners; a++) m[a] = density * volume / (PetscReal)tled->mesh.n_corners;
+  if (tled->mesh.n_corners == 10) {
+    double X[30];
+    for (int k = 0; k < 30; k++) X[k] = tled->mesh.X[3 * tled->mesh.tets[10 * b->element[l] + k / 3] + k % 3];
+    (void)TLEDLumpT10(X, m);
+    for (int a = 0; a < 10; a++) m[a] *= density;
+  } else
+    for (int a = 0; a < 4; a++) m[a] = 0.25 * density * volume;
   return volume;
 }
 

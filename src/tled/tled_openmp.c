@@ -324,10 +324,11 @@ INLINE void PassAverage(int forces, const TLEDLoops *w, const double u[])
   }
 }
 
-/* how many threads share the work: one for every TLED_THREAD_BLOCKS blocks; results do not depend on it */
+/* how many threads share the work: one for so many blocks; results do not depend on it */
 int TLEDThreads_OpenMP(const TLEDLoops *w)
 {
-  const int wanted = w->blocks->n_blocks / TLED_THREAD_BLOCKS, most = omp_get_max_threads();
+  const int blocks = w->blocks->n_corners == 4 ? TLED_THREAD_BLOCKS : TLED_THREAD_BLOCKS_T10;
+  const int wanted = w->blocks->n_blocks / blocks, most = omp_get_max_threads();
 
   return wanted < 1 ? 1 : wanted < most ? wanted : most;
 }

@@ -95,6 +95,96 @@ static void Cube_IsReadAsWritten(void **state)
   }
 }
 
+/* a cube of quadratic tetrahedra, in both formats, text and binary of both orders of bytes */
+static void QuadraticCube_IsReadAsWritten(void **state)
+{
+  static const int edge[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}; /* VTK's order */
+
+  (void)state;
+  for (int i = 0; i < 6; i++) {
+    const CubeFile   file = {i % 2 ? 22 : 41, i / 2, 0.0, 1};
+    char            *path = Path("cube2.msh");
+    TLEDParams      *p;
+    TLED             tled = Body(path, &p);
+    const PetscInt  *tets, *tri, *nodes;
+    const PetscReal *X, *mass;
+    PetscInt         n_nodes, n_tets, n_corners, n, all;
+    PetscReal        total = 0.0, flux = 0.0;
+
+    WriteCube2(path, &file);
+    p->element = TLED_ELEMENT_AUTO;
+    AddName(&p->wetted, "floor");
+    assert_petsc(TLEDSetUp(tled));
+    assert_petsc(TLEDGetSize(tled, &n_nodes, &n_tets));
+    assert_int_equal(n_nodes, 27);
+    assert_int_equal(n_tets, 6);
+    assert_petsc(TLEDGetMesh(tled, &n_corners, &tets, &X));
+    assert_int_equal(n_corners, 10);
+    for (PetscInt e = 0; e < 6; e++)
+      for (int a = 0; a < 6; a++)
+        for (int k = 0; k < 3; k++)
+          assert_true(X[3 * tets[10 * e + 4 + a] + k] ==
+                      0.5 * (X[3 * tets[10 * e + edge[a][0]] + k] + X[3 * tets[10 * e + edge[a][1]] + k]));
+    assert_petsc(TLEDGetMass(tled, &mass));
+    for (PetscInt a = 0; a < n_nodes; a++) total += mass[a];
+    assert_close(total, 1000.0, 1e-14, 1000.0);
+    assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &all, &tri));
+    assert_int_equal(all, 48);
+    for (PetscInt t = 0; t < all; t++) { /* three volumes, when every triangle looks outward */
+      double a[3], b[3];
+      for (int k = 0; k < 3; k++)
+        a[k] = X[3 * tri[3 * t + 1] + k] - X[3 * tri[3 * t] + k], b[k] = X[3 * tri[3 * t + 2] + k] - X[3 * tri[3 * t] + k];
+      flux += 0.5 * (X[3 * tri[3 * t]] * (a[1] * b[2] - a[2] * b[1]) + X[3 * tri[3 * t] + 1] * (a[2] * b[0] - a[0] * b[2]) +
+                     X[3 * tri[3 * t] + 2] * (a[0] * b[1] - a[1] * b[0]));
+    }
+    assert_close(flux, 3.0, 1e-13, 3.0);
+    assert_petsc(TLEDGetSurface(tled, PETSC_TRUE, &n, &tri));
+    assert_int_equal(n, 8);
+    for (PetscInt k = 0; k < 24; k++) assert_true(X[3 * tri[k] + 2] == 0.0);
+    assert_petsc(TLEDGetGroup(tled, "floor", &n, &nodes)); /* with the edges' nodes */
+    assert_int_equal(n, 9);
+    for (PetscInt k = 0; k < 9; k++) assert_true(X[3 * nodes[k] + 2] == 0.0);
+    unlink(path);
+    assert_petsc(TLEDDestroy(&tled));
+  }
+}
+
+/* an element is refused when a node of an edge turns it inside out at an integration point, and told with its number */
+static void InvertedQuadraticElement_IsNamed(void **state)
+{
+  const CubeFile file = {22, 0, 0.9, 1};
+  TLEDParams    *p;
+  char          *path = Path("curved.msh");
+
+  (void)state;
+  WriteCube2(path, &file);
+  REFUSED(Body(path, &p), "body.mesh", "an inverted element: number ", "a smallest Jacobian at its integration points of -",
+          "of 6 elements are bad", "-optimize_ho");
+  unlink(path);
+}
+
+static void ElementAndOrder_MustAgree(void **state)
+{
+  static const int elements[2] = {TLED_ELEMENT_T4, TLED_ELEMENT_ANP};
+  const CubeFile   file = {41, 0, 0.0, 1};
+  char            *path = Path("order.msh");
+  TLEDParams      *p;
+  TLED             tled;
+
+  (void)state;
+  WriteCube2(path, &file);
+  for (int i = 0; i < 2; i++) {
+    tled       = Body(path, &p);
+    p->element = elements[i];
+    REFUSED(tled, "body.element", "the mesh is of second order", "expected t10 or auto");
+  }
+  WriteCube(path, 41, 0, 0, NULL);
+  tled       = Body(path, &p);
+  p->element = TLED_ELEMENT_T10;
+  REFUSED(tled, "body.element", "the mesh is of first order", "gmsh body.msh -3 -order 2");
+  unlink(path);
+}
+
 static void MissingAndForeignFiles_AreRefused(void **state)
 {
   TLEDParams *p;
@@ -279,7 +369,9 @@ static void ShippedMeshes_AreGood(void **state)
   }
 }
 
-CHECK_MAIN(cmocka_unit_test(Cube_IsReadAsWritten), cmocka_unit_test(MissingAndForeignFiles_AreRefused),
+CHECK_MAIN(cmocka_unit_test(Cube_IsReadAsWritten), cmocka_unit_test(QuadraticCube_IsReadAsWritten),
+           cmocka_unit_test(InvertedQuadraticElement_IsNamed), cmocka_unit_test(ElementAndOrder_MustAgree),
+           cmocka_unit_test(MissingAndForeignFiles_AreRefused),
            cmocka_unit_test(TruncatedFile_IsRefused), cmocka_unit_test(WrongKinds_AreRefused),
            cmocka_unit_test(ImpossibleMesh_IsRefused), cmocka_unit_test(InvertedElement_IsNamed),
            cmocka_unit_test(MissingGroup_IsNamedWithTheNearest), cmocka_unit_test(ShippedMeshes_AreGood))

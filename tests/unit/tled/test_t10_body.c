@@ -1,0 +1,345 @@
+/* Bodies of ten-node tetrahedra: patch test, rigid motion, gradient of the energy, tangent and its rank, time; with both quadrature
+   rules, straight and curved elements. */
+#include "unit/tled/cube.h"
+#include "unit/tled/patch_reference.h"
+#include <omp.h>
+#include <petscblaslapack.h>
+
+#define ROUND 1e-12 /* of the largest force: sums of a few hundred numbers */
+
+static const double *map; /* the affine map of the test, row-major F */
+
+static void Affine(const PetscReal X[3], PetscReal u[3])
+{
+  for (int i = 0; i < 3; i++) u[i] = map[3 * i] * X[0] + map[3 * i + 1] * X[1] + map[3 * i + 2] * X[2] - X[i] + 0.3 * (i + 1);
+}
+
+static void Wavy(const PetscReal X[3], PetscReal u[3])
+{
+  u[0] = 0.05 * sin(3 * X[1] + X[2]) + 0.04 * X[0] * X[0];
+  u[1] = 0.06 * cos(2 * X[0]) - 0.05 * X[1] * X[2];
+  u[2] = 0.04 * sin(4 * X[2] + X[0] * X[1]) + 0.03 * X[2];
+}
+
+/* a unit cube of six quadratic tetrahedra */
+static TLED Cube(int material, int quadrature, double curved)
+{
+  const CubeFile file = {41, 0, curved, 1};
+  char           path[64];
+  TLEDParams    *p;
+  TLED           tled = NewBody("", &p);
+
+  snprintf(path, sizeof path, "/tmp/byssus_test_t10_%d.msh", (int)getpid());
+  WriteCube2(path, &file);
+  snprintf(p->mesh, sizeof p->mesh, "%s", path);
+  p->element          = TLED_ELEMENT_AUTO;
+  p->quadrature       = quadrature;
+  p->elastic.material = material;
+  p->elastic.young    = 2.0 * reference_mu * 1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
+  assert_petsc(TLEDSetUp(tled));
+  unlink(path);
+  return tled;
+}
+
+/* Affine motion: the stress of the independent code everywhere, so that every node feels P times the integral of its shape function
+   over the surface. On straight elements with both rules: f on a vertex is 0 and on a face's edge node P A/3 N of each face. */
+static void PatchTest_GivesTheUniformStress(void **state)
+{
+  (void)state;
+  for (int law = 0; law < 2; law++) {
+    for (int rule = 0; rule < 2; rule++) {
+      TLED             tled = Cube(law, rule, 0.0);
+      const PetscInt  *tri;
+      const PetscReal *X, *f;
+      PetscInt         n_tri, n;
+      Vec              u, force;
+      TLEDStats        s;
+
+      assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+      assert_petsc(VecDuplicate(u, &force));
+      assert_petsc(TLEDGetSize(tled, &n, NULL));
+      assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
+      assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &n_tri, &tri));
+      for (int i = 0; i < 5; i++) {
+        const PatchReference *r        = &patch_reference[law][i];
+        double               *expected = calloc(3 * (size_t)n, sizeof *expected);
+        map                            = r->F;
+        SetVec(tled, u, Affine);
+        assert_petsc(TLEDInternalForce(tled, u, force));
+        for (PetscInt t = 3; t < n_tri; t += 4) { /* the middle one of a face's four triangles: its corners are the edges' nodes */
+          double a[3], b[3], area[3];
+          for (int k = 0; k < 3; k++)
+            a[k] = X[3 * tri[3 * t + 1] + k] - X[3 * tri[3 * t] + k], b[k] = X[3 * tri[3 * t + 2] + k] - X[3 * tri[3 * t] + k];
+          area[0] = 2.0 * (a[1] * b[2] - a[2] * b[1]), area[1] = 2.0 * (a[2] * b[0] - a[0] * b[2]),
+          area[2] = 2.0 * (a[0] * b[1] - a[1] * b[0]);
+          for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 3; k++)
+              expected[3 * tri[3 * t + c] + k] +=
+                  (r->P[3 * k] * area[0] + r->P[3 * k + 1] * area[1] + r->P[3 * k + 2] * area[2]) / 3.0;
+        }
+        assert_petsc(VecGetArrayRead(force, &f));
+        for (PetscInt k = 0; k < 3 * n; k++) assert_close(f[k], expected[k], ROUND, 1e6);
+        assert_petsc(VecRestoreArrayRead(force, &f));
+        assert_petsc(TLEDGetStats(tled, &s));
+        assert_close(s.strain, r->W, ROUND, r->W);
+        free(expected);
+      }
+      assert_petsc(VecDestroy(&force));
+      assert_petsc(TLEDDestroy(&tled));
+    }
+  }
+}
+
+/* The same on curved elements: the only node within the cube is in balance with 14 points, which integrate cof J dN exactly (degree
+   3), and nearly so with 4. */
+static void CurvedPatch_IsInBalance(void **state)
+{
+  static const double allowed[2] = {2e-4, ROUND};
+  static const double F[9] = {1.2, 0.1, 0.0, 0.05, 0.9, -0.1, 0.0, 0.2, 1.1};
+
+  (void)state;
+  map = F;
+  for (int rule = 0; rule < 2; rule++) {
+    TLED             tled = Cube(TLED_MATERIAL_NEO_HOOKEAN, rule, 0.05);
+    const PetscReal *X, *f;
+    PetscInt         n, n_inside = 0;
+    Vec              u, force;
+
+    assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+    assert_petsc(VecDuplicate(u, &force));
+    assert_petsc(TLEDGetSize(tled, &n, NULL));
+    assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
+    SetVec(tled, u, Affine);
+    assert_petsc(TLEDInternalForce(tled, u, force));
+    assert_petsc(VecGetArrayRead(force, &f));
+    for (PetscInt a = 0; a < n; a++) {
+      if (fabs(X[3 * a] - 0.5) > 0.1 || fabs(X[3 * a + 1] - 0.5) > 0.1 || fabs(X[3 * a + 2] - 0.5) > 0.1) continue;
+      n_inside++;
+      for (int k = 0; k < 3; k++) assert_close(f[3 * a + k], 0.0, allowed[rule], 1e6);
+      if (rule == 0) assert_true(fabs(f[3 * a]) + fabs(f[3 * a + 1]) + fabs(f[3 * a + 2]) > ROUND * 1e6); /* why 14 is offered */
+    }
+    assert_int_equal(n_inside, 1);
+    assert_petsc(VecRestoreArrayRead(force, &f));
+    assert_petsc(VecDestroy(&force));
+    assert_petsc(TLEDDestroy(&tled));
+  }
+}
+
+static void RigidMotion_GivesNoForce(void **state)
+{
+  static double Q[9]; /* a turn by 2.1 about y */
+
+  Q[0] = Q[8] = cos(2.1), Q[2] = sin(2.1), Q[4] = 1.0, Q[6] = -sin(2.1);
+  (void)state;
+  map = Q;
+  for (int k = 0; k < 8; k++) {
+    TLED      tled = Cube(k & 1, k >> 1 & 1, k & 4 ? 0.05 : 0.0);
+    Vec       u, f;
+    PetscReal top;
+    TLEDStats stats;
+
+    assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+    assert_petsc(VecDuplicate(u, &f));
+    SetVec(tled, u, Affine);
+    assert_petsc(TLEDInternalForce(tled, u, f));
+    assert_petsc(VecNorm(f, NORM_INFINITY, &top));
+    assert_close(top, 0.0, ROUND, 1e6);
+    assert_petsc(TLEDGetStats(tled, &stats));
+    assert_close(stats.strain, 0.0, ROUND, 1e6);
+    assert_close(stats.volume, stats.volume_reference, ROUND, 1.0);
+    assert_petsc(VecDestroy(&f));
+    assert_petsc(TLEDDestroy(&tled));
+  }
+}
+
+/* f = dW/du and K = df/du along a direction, by central differences of step 1e-6: the error is eps^2 and round-off over eps */
+static void ForceAndTangent_AreDerivatives(void **state)
+{
+  const PetscReal eps = 1e-6;
+
+  (void)state;
+  for (int k = 0; k < 8; k++) {
+    TLED      tled = Cube(k & 1, k >> 1 & 1, k & 4 ? 0.05 : 0.0);
+    Vec       u, u0, d, f, up, down, Kd;
+    Mat       K = NULL;
+    PetscReal W[2], work, size, top;
+    TLEDStats stats;
+
+    assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+    assert_petsc(VecDuplicate(u, &u0));
+    assert_petsc(VecDuplicate(u, &d));
+    assert_petsc(VecDuplicate(u, &f));
+    assert_petsc(VecDuplicate(u, &up));
+    assert_petsc(VecDuplicate(u, &down));
+    assert_petsc(VecDuplicate(u, &Kd));
+    SetVec(tled, u0, Wavy);
+    map = patch_reference[0][0].F;
+    SetVec(tled, d, Affine);
+    assert_petsc(VecPointwiseMult(d, d, u0));
+    assert_petsc(VecNorm(d, NORM_INFINITY, &size));
+    assert_petsc(VecScale(d, 1.0 / size));
+    assert_petsc(TLEDInternalForce(tled, u0, f));
+    assert_petsc(TLEDTangent(tled, u0, &K));
+    for (int i = 0; i < 2; i++) {
+      assert_petsc(VecWAXPY(u, i ? -eps : eps, d, u0));
+      assert_petsc(TLEDInternalForce(tled, u, i ? down : up));
+      assert_petsc(TLEDGetStats(tled, &stats));
+      W[i] = stats.strain;
+    }
+    assert_petsc(VecDot(f, d, &work));
+    assert_close((W[0] - W[1]) / (2 * eps), work, 1e-8, 1e5);
+    assert_petsc(VecAXPY(up, -1.0, down));
+    assert_petsc(VecScale(up, 1.0 / (2 * eps)));
+    assert_petsc(MatMult(K, d, Kd));
+    assert_petsc(VecNorm(Kd, NORM_INFINITY, &size));
+    assert_petsc(VecAXPY(Kd, -1.0, up));
+    assert_petsc(VecNorm(Kd, NORM_INFINITY, &top));
+    assert_close(top, 0.0, 1e-8, size);
+    assert_petsc(MatDestroy(&K));
+    assert_petsc(VecDestroy(&u0));
+    assert_petsc(VecDestroy(&d));
+    assert_petsc(VecDestroy(&f));
+    assert_petsc(VecDestroy(&up));
+    assert_petsc(VecDestroy(&down));
+    assert_petsc(VecDestroy(&Kd));
+    assert_petsc(TLEDDestroy(&tled));
+  }
+}
+
+/* one element: 30 freedoms, six rigid motions, no mechanism: 24 eigenvalues are positive, with four points too */
+static void Stiffness_HasRank24(void **state)
+{
+  (void)state;
+  for (int rule = 0; rule < 2; rule++) {
+    TLEDParams  *p;
+    TLED         tled = NewBody("", &p);
+    char         path[64];
+    FILE        *f;
+    Vec          u;
+    Mat          K = NULL;
+    PetscScalar  A[900], values[30], work[256];
+    PetscInt     all[30];
+    PetscBLASInt n = 30, n_work = 256, info;
+
+    snprintf(path, sizeof path, "/tmp/byssus_test_t10_one_%d.msh", (int)getpid());
+    f = fopen(path, "w");
+    fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 .5 0 0\n6 .5 .5 0\n7 0 .5 0\n"
+               "8 0 0 .5\n9 0 .5 .5\n10 .5 0 .5\n$EndNodes\n$Elements\n1\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+    fclose(f);
+    snprintf(p->mesh, sizeof p->mesh, "%s", path);
+    p->element    = TLED_ELEMENT_T10;
+    p->quadrature = rule;
+    assert_petsc(TLEDSetUp(tled));
+    unlink(path);
+    assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+    assert_petsc(TLEDTangent(tled, u, &K));
+    for (PetscInt k = 0; k < 30; k++) all[k] = k;
+    assert_petsc(MatGetValues(K, 30, all, 30, all, A));
+    LAPACKsyev_("N", "U", &n, A, &n, values, work, &n_work, &info);
+    assert_int_equal(info, 0);
+    for (int k = 0; k < 6; k++) assert_close(values[k], 0.0, 1e-13, values[29]);
+    assert_true(values[6] > 1e-3 * values[29]); /* measured: 0.004 and 0.005 of the largest */
+    assert_petsc(MatDestroy(&K));
+    assert_petsc(TLEDDestroy(&tled));
+  }
+}
+
+static TLED Beam(TLEDParams **p)
+{
+  const PetscReal g[3] = {0.0, 0.0, -9.81};
+  TLED            tled = NewBody("tests/meshes/beam_h1_order2.msh", p);
+
+  (*p)->element = TLED_ELEMENT_AUTO;
+  AddName(&(*p)->fixed, "clamp");
+  assert_petsc(TLEDSetGravity(tled, g));
+  return tled;
+}
+
+/* released under gravity the energy stays what it was: the step from the power iteration is stable */
+static void Release_KeepsItsEnergy(void **state)
+{
+  TLEDParams *p;
+  TLED        tled = Beam(&p);
+  TLEDStats   s;
+  PetscReal   critical;
+
+  (void)state;
+  assert_petsc(TLEDSetUp(tled));
+  assert_petsc(TLEDGetCriticalStep(tled, &critical));
+  assert_true(critical > 1e-5 && critical < 1e-3);
+  assert_petsc(TLEDAdvance(tled, 0.05, NULL));
+  assert_petsc(TLEDGetStats(tled, &s));
+  assert_true(s.kinetic > 0.1);
+  assert_close(s.kinetic + s.strain + s.gravity_potential, 0.0, 1e-3, s.kinetic); /* dt^2 of the highest modes that gravity excites */
+  assert_petsc(TLEDDestroy(&tled));
+}
+
+/* enough elements that three threads share them */
+static void Results_DoNotDependOnThreads(void **state)
+{
+  const CubeFile file  = {22, 1, 0.0, 8};
+  const int      most  = omp_get_max_threads();
+  PetscReal     *first = NULL;
+  PetscInt       n;
+  char           path[64];
+
+  (void)state;
+  snprintf(path, sizeof path, "/tmp/byssus_test_t10_threads_%d.msh", (int)getpid());
+  WriteCube2(path, &file);
+  for (int threads = 1; threads <= 3; threads++) {
+    TLEDParams *p;
+    TLED        tled = NewBody("", &p);
+    PetscReal  *f;
+    Vec         u, force;
+
+    omp_set_num_threads(threads);
+    snprintf(p->mesh, sizeof p->mesh, "%s", path);
+    p->element = TLED_ELEMENT_T10;
+    assert_petsc(TLEDSetUp(tled));
+    assert_petsc(TLEDGetSize(tled, &n, NULL));
+    assert_petsc(TLEDGetVectors(tled, &u, NULL, &force));
+    SetVec(tled, u, Wavy);
+    assert_petsc(TLEDInternalForce(tled, u, force));
+    assert_petsc(VecGetArray(force, &f));
+    if (!first) {
+      first = malloc(3 * (size_t)n * sizeof *first);
+      memcpy(first, f, 3 * (size_t)n * sizeof *first);
+    } else assert_memory_equal(first, f, 3 * (size_t)n * sizeof *first);
+    assert_petsc(VecRestoreArray(force, &f));
+    assert_petsc(TLEDDestroy(&tled));
+  }
+  omp_set_num_threads(most);
+  unlink(path);
+  free(first);
+}
+
+/* an edge's node pulled through the element: det F < 0 at an integration point, though the vertices have not moved */
+static void InvertedElement_IsReported(void **state)
+{
+  TLED             tled = Cube(TLED_MATERIAL_NEO_HOOKEAN, TLED_QUADRATURE_4, 0.0);
+  const PetscReal *X;
+  PetscReal       *u;
+  PetscInt         n;
+  Vec              U, f;
+  const char      *message;
+
+  (void)state;
+  assert_petsc(TLEDGetVectors(tled, &U, NULL, NULL));
+  assert_petsc(VecDuplicate(U, &f));
+  assert_petsc(TLEDGetSize(tled, &n, NULL));
+  assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
+  assert_petsc(VecGetArray(U, &u));
+  u[3 * NodeAt(tled, 0.5, 0.5, 0.5)] = 0.9;
+  assert_petsc(VecRestoreArray(U, &u));
+  assert_int_equal((int)TLEDInternalForce(tled, U, f), (int)BY_ERR_BREAKDOWN);
+  assert_petsc(TLEDGetBreakdown(tled, &message));
+  assert_non_null(strstr(message, "element "));
+  assert_non_null(strstr(message, "turned inside out"));
+  assert_petsc(VecDestroy(&f));
+  assert_petsc(TLEDDestroy(&tled));
+}
+
+CHECK_MAIN(cmocka_unit_test(PatchTest_GivesTheUniformStress), cmocka_unit_test(CurvedPatch_IsInBalance),
+           cmocka_unit_test(RigidMotion_GivesNoForce), cmocka_unit_test(ForceAndTangent_AreDerivatives),
+           cmocka_unit_test(Stiffness_HasRank24), cmocka_unit_test(Release_KeepsItsEnergy),
+           cmocka_unit_test(Results_DoNotDependOnThreads), cmocka_unit_test(InvertedElement_IsReported))
