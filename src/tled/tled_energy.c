@@ -64,22 +64,26 @@ PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscRea
   double            J_first = 0.0, x[3] = {0.0, 0.0, 0.0};
 
   PetscFunctionBegin;
-  for (int k = 0; k < TLED_LANES * b->n_packs * b->n_points; k++) {
-    const int l = k / b->n_points;
-    TLEDPoint p;
-    if (b->element[l] < 0) continue;
-    TLEDPointAt_Private(&tled->loops, mesh->tets, l, k % b->n_points, u, &p);
-    const double J = 1.0 + p.jm1;
-    if (J > 0.0) continue;
-    if (!n_broken++) first = b->element[l], J_first = J;
+  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
+    PetscBool broken = PETSC_FALSE;
+    for (int point = 0; point < b->n_points && b->element[l] >= 0 && !broken; point++) {
+      TLEDPoint p;
+      TLEDPointAt_Private(&tled->loops, mesh->tets, l, point, u, &p);
+      const double J = 1.0 + p.jm1;
+      if (J > 0.0) continue;
+      broken = PETSC_TRUE;
+      if (!n_broken++) first = b->element[l], J_first = J;
+    }
   }
   if (first < 0) {
     PetscCall(PetscSNPrintf(tled->breakdown, TLED_MESSAGE, "body %s: the internal forces are not finite at time %g s",
                             ((PetscObject)tled)->name, (double)time));
     PetscFunctionReturn(BY_ERR_BREAKDOWN);
   }
-  for (int a = 0; a < 4; a++)
-    for (int k = 0; k < 3; k++) x[k] += 0.25 * (mesh->X[3 * mesh->tets[4 * first + a] + k] + u[3 * mesh->tets[4 * first + a] + k]);
+  for (int a = 0; a < 4; a++) {
+    const PetscInt vertex = mesh->tets[mesh->n_corners * first + a];
+    for (int k = 0; k < 3; k++) x[k] += 0.25 * (mesh->X[3 * vertex + k] + u[3 * vertex + k]);
+  }
   PetscCall(PetscSNPrintf(
       tled->breakdown, TLED_MESSAGE,
       "body %s: element %" PetscInt_FMT " of the mesh file %s at (%.4g, %.4g, %.4g) m, time %.6g s: det F = %.3g (%" PetscInt_FMT
