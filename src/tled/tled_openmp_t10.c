@@ -83,19 +83,41 @@ INLINE void PointForces(const TLEDLaw *m, const double L4[4], const double Jinv[
 /* forces of a pack at all integration points, for one law known to the compiler; returns how many points are broken */
 INLINE int PackForces(int law, const TLEDLaw *material, const TLEDBlocks *b, int pack, const Points *points, Pack *p)
 {
-  const double *fibre  = b->fibre ? b->fibre + 3 * L * pack : NULL;
-  TLEDLaw       m      = *material;
+  const double *fibre  = b->fibre && law == TLED_LAW_TRANSVERSE ? b->fibre + 3 * L * pack : NULL;
+  const TLEDLaw m      = KnownLaw(law, material);
   int           broken = 0;
 
-  m.law = law;
   for (int q = 0; q < b->n_points; q++) {
     const int     place = (b->n_points * pack + q) * L;
     const double *Jinv = b->G + 9 * place, *V0 = b->V0 + place;
     broken += PointGradients(points->L4[q], Jinv, p);
-    if (law != TLED_LAW_ST_VENANT_KIRCHHOFF) PackLogarithms(p->jm1, p->ln_J);
+    if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(p->jm1, p->ln_J);
     PointForces(&m, points->L4[q], Jinv, V0, fibre, p);
   }
   return broken;
+}
+
+#define FORCES_OF(Law, number)                                                                                    \
+  KERNEL int Forces##Law(const TLEDLaw *m, const TLEDBlocks *b, int pack, const Points *points, Pack *p)          \
+  {                                                                                                               \
+    return PackForces(number, m, b, pack, points, p);                                                             \
+  }
+FORCES_OF(NeoHookean, TLED_LAW_NEO_HOOKEAN)
+FORCES_OF(StVenantKirchhoff, TLED_LAW_ST_VENANT_KIRCHHOFF)
+FORCES_OF(NeoHookeanIso, TLED_LAW_NEO_HOOKEAN_ISO)
+FORCES_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
+FORCES_OF(Transverse, TLED_LAW_TRANSVERSE)
+
+/* the same by the law of the pack */
+static int PackForcesLaw(const TLEDLaw *m, const TLEDBlocks *b, int pack, const Points *points, Pack *p)
+{
+  switch (m->law) {
+  case TLED_LAW_NEO_HOOKEAN: return ForcesNeoHookean(m, b, pack, points, p);
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: return ForcesStVenantKirchhoff(m, b, pack, points, p);
+  case TLED_LAW_NEO_HOOKEAN_ISO: return ForcesNeoHookeanIso(m, b, pack, points, p);
+  case TLED_LAW_MOONEY_RIVLIN: return ForcesMooneyRivlin(m, b, pack, points, p);
+  default: return ForcesTransverse(m, b, pack, points, p);
+  }
 }
 
 /* add the forces of a pack to the block's nodes, node after node and lane after lane */
@@ -124,13 +146,9 @@ void TLEDForcesT10_OpenMP(const TLEDLoops *w, const double u[])
     LoadNodes(b, block, u, &s);
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
-      const int     *local = b->local + 10 * L * pack;
-      const TLEDLaw *m     = &w->laws[b->material[pack]];
+      const int *local = b->local + 10 * L * pack;
       LoadPack(local, &s, &p);
-      switch (m->law) {
-      case TLED_LAW_NEO_HOOKEAN: broken += PackForces(TLED_LAW_NEO_HOOKEAN, m, b, pack, &points, &p); break;
-      default: broken += PackForces(TLED_LAW_ST_VENANT_KIRCHHOFF, m, b, pack, &points, &p); break;
-      }
+      broken += PackForcesLaw(&w->laws[b->material[pack]], b, pack, &points, &p);
       AddForces(local, &p, &s);
     }
     StoreBlock(b, block, &s, w->partial);
