@@ -68,6 +68,7 @@ const SceneSection CouplerSchema[] = {
   {"fill",     FillKeys,     "sph",      "fill",      "water at the start: a box, or the inside of a surface"},
   {"body",     TLEDKeys,     NULL,       "bodies",    "an elastic body"},
   {"material", TLEDMaterialKeys, "body", "materials", "an elastic material of a part of a body"},
+  {"constraint", TLEDConstraintKeys, "body", "constraints", "a support of a body: what is held or moved"},
   {"proxy",    ProxyKeys,    "body",     NULL,        "surface proxies of a body"},
   {"obstacle", ObstacleKeys, NULL,       "obstacles", "a rigid obstacle at rest"},
   {"proxy",    ProxyKeys,    "obstacle", NULL,        "surface proxies of an obstacle"},

@@ -110,7 +110,7 @@ static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams
   PetscCall(TLEDCreate(PETSC_COMM_SELF, name, &tled));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)tled, prefix));
-  PetscCall(TLEDSetFromOptions(tled));
+  ByCall(TLEDSetFromOptions(tled));
   PetscCall(TLEDSetGravity(tled, c->gravity));
   ByCall(TLEDSetUp(tled));
   PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));

@@ -84,24 +84,26 @@ static void Outward(const Near *near, PetscInt t, PetscReal sign, PetscReal norm
 }
 
 /* Impulse of a plastic impact of particle t with its triangle along the normal [N s]: takes the approaching relative speed away and gives
-   the nodes their part; v are the nodes' velocities. */
+   the nodes their part, which move in their free directions P n only; v are the nodes' velocities. */
 static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscReal particle_mass, const PetscReal vi[3], const PetscReal normal[3],
-                        const PetscReal mass[], const PetscBool constrained[], PetscReal v[])
+                        const PetscReal mass[], PetscReal v[])
 {
   const PetscInt *node    = &near->triangles[3 * near->triangle[t]];
-  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), work = 0.0, J;
+  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), work = 0.0, way[3][3], J;
 
   for (int a = 0; s->tled && a < 3; a++) {
-    const PetscReal w = near->weights[3 * t + a];
+    const PetscReal  w = near->weights[3 * t + a];
+    const PetscReal *P;
 
+    (void)TLEDGetProjector(s->tled, node[a], &P);
+    for (int i = 0; i < 3; i++) way[a][i] = P ? Dot3(&P[3 * i], normal) : normal[i];
     speed -= w * Dot3(&v[3 * node[a]], normal);
-    if (!constrained[node[a]]) inverse += w * w / mass[node[a]];
+    inverse += w * w / mass[node[a]] * Dot3(way[a], normal);
   }
   J = PetscMax(0.0, -speed / inverse);
   for (int a = 0; s->tled && a < 3; a++) {
-    if (constrained[node[a]]) continue;
     for (int i = 0; i < 3; i++) {
-      const PetscReal gain = -J * near->weights[3 * t + a] / mass[node[a]] * normal[i];
+      const PetscReal gain = -J * near->weights[3 * t + a] / mass[node[a]] * way[a][i];
 
       work += mass[node[a]] * gain * (v[3 * node[a] + i] + 0.5 * gain);
       v[3 * node[a] + i] += gain;
@@ -119,16 +121,12 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
   const SPHContacts *q = &c->contacts[k];
   const PetscReal   *x, *v, *p, *rho, *mass = NULL;
   const PetscInt    *id;
-  const PetscBool   *constrained = NULL;
   SPHParams         *params;
 
   PetscFunctionBegin;
   PetscCall(SPHGetParams(c->sph, &params));
   PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
-  if (s->tled) {
-    PetscCall(TLEDGetMass(s->tled, &mass));
-    PetscCall(TLEDIsConstrained(s->tled, &constrained));
-  }
+  if (s->tled) PetscCall(TLEDGetMass(s->tled, &mass));
   for (PetscInt t = 0; t < near->n; t++) {
     const PetscReal gap = (near->winding[t] > 0.5 ? -1.0 : 1.0) * near->distance[t], stop = SPH_STOP_GAP * params->spacing;
     PetscReal       normal[3], change[3], shift[3], vi[3], m[3], J;
@@ -136,7 +134,7 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
     if (near->triangle[t] < 0 || gap >= stop) continue;
     Outward(near, t, gap < 0.0 ? -1.0 : 1.0, normal);
     for (int i = 0; i < 3; i++) vi[i] = v[3 * q->particle[t] + i];
-    J = Impact(s, near, t, c->mass, vi, normal, mass, constrained, v_nodes);
+    J = Impact(s, near, t, c->mass, vi, normal, mass, v_nodes);
     for (int i = 0; i < 3; i++) {
       change[i] = J / c->mass * normal[i];
       shift[i]  = PetscMax(0.0, stop - gap - dt * J / c->mass) * normal[i];

@@ -18,21 +18,53 @@
 
    to the pressure equation: symmetric and positive, so conjugate gradients go on working. */
 #include "coupler_impl.h"
+#include "mat3.h"
 
-/* rows of constrained nodes answer nothing: unit diagonal, zero elsewhere */
-static PetscErrorCode FixConstrained(CouplerSurface *s, Mat A)
+/* y = P x of a node; P NULL: all directions are free */
+static void Free(const PetscReal P[9], const PetscReal x[3], PetscReal y[3])
 {
-  const PetscBool *constrained;
-  PetscInt        *rows, n = 0;
+  for (int i = 0; i < 3; i++) y[i] = P ? Dot3(&P[3 * i], x) : x[i];
+}
+
+/* a block of rows of node a and columns of node b: P_a B P_b; at entries line[i][j] */
+static void ProjectBlock(const PetscReal P_a[9], const PetscReal P_b[9], PetscScalar *line[3])
+{
+  PetscReal half[9], column[3], to[3];
+
+  for (int i = 0; i < 3; i++) Free(P_b, line[i], &half[3 * i]); /* P_b is symmetric */
+  for (int j = 0; j < 3; j++) {
+    for (int i = 0; i < 3; i++) column[i] = half[3 * i + j];
+    Free(P_a, column, to);
+    for (int i = 0; i < 3; i++) line[i][j] = to[i];
+  }
+}
+
+/* held directions answer nothing: A_ab <- P_a A_ab P_b + (I - P_a) m_a for a = b. Each row of blocks of three has the same columns. */
+static PetscErrorCode ProjectConstrained(CouplerSurface *s, const PetscReal mass[], Mat A)
+{
+  const PetscInt  *row, *column;
+  const PetscReal *P_a, *P_b;
+  PetscScalar     *value;
+  PetscInt         n;
+  PetscBool        done;
 
   PetscFunctionBegin;
-  PetscCall(TLEDIsConstrained(s->tled, &constrained));
-  PetscCall(PetscMalloc1(3 * s->n_nodes, &rows));
+  PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &row, &column, &done));
+  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_SUP, "the response's matrix does not tell its pattern");
+  PetscCall(MatSeqAIJGetArray(A, &value));
   for (PetscInt a = 0; a < s->n_nodes; a++) {
-    for (PetscInt k = 0; k < 3 && constrained[a]; k++) rows[n++] = 3 * a + k;
+    PetscCall(TLEDGetProjector(s->tled, a, &P_a));
+    for (PetscInt k = 0; k < row[3 * a + 1] - row[3 * a]; k += 3) {
+      const PetscInt b       = column[row[3 * a] + k] / 3;
+      PetscScalar   *line[3] = {&value[row[3 * a] + k], &value[row[3 * a + 1] + k], &value[row[3 * a + 2] + k]};
+
+      PetscCall(TLEDGetProjector(s->tled, b, &P_b));
+      if (P_a || P_b) ProjectBlock(P_a, P_b, line);
+      for (int i = 0; i < 9 && P_a && a == b; i++) line[i / 3][i % 3] += mass[a] * ((i % 4 ? 0.0 : 1.0) - P_a[i]);
+    }
   }
-  PetscCall(MatZeroRowsColumns(A, n, rows, 1.0, NULL, NULL));
-  PetscCall(PetscFree(rows));
+  PetscCall(MatSeqAIJRestoreArray(A, &value));
+  PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &row, &column, &done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,7 +110,7 @@ PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
   for (PetscInt i = 0; i < 3 * s->n_nodes; i++) PetscCall(MatSetValue(r->matrix, i, i, mass[i / 3], ADD_VALUES));
   PetscCall(MatAssemblyBegin(r->matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(r->matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(FixConstrained(s, r->matrix));
+  PetscCall(ProjectConstrained(s, mass, r->matrix));
   PetscCall(KSPSetOperators(r->ksp, r->matrix, r->matrix));
   PetscCall(KSPSetUp(r->ksp));
   r->dt  = dt;
@@ -86,18 +118,20 @@ PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* velocity = S force, both n_nodes x 3; zero at constrained nodes */
+/* velocity = S force, both n_nodes x 3; zero in held directions */
 PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], PetscReal velocity[])
 {
   CouplerResponse *r = &s->response;
-  const PetscBool *constrained;
-  const PetscReal *z;
+  const PetscReal *z, *P;
   PetscReal       *b;
 
   PetscFunctionBegin;
-  PetscCall(TLEDIsConstrained(s->tled, &constrained));
   PetscCall(VecGetArrayWrite(r->rhs, &b));
-  for (PetscInt i = 0; i < 3 * s->n_nodes; i++) b[i] = constrained[i / 3] ? 0.0 : 0.5 * r->dt_step * force[i];
+  for (PetscInt a = 0; a < s->n_nodes; a++) {
+    PetscCall(TLEDGetProjector(s->tled, a, &P));
+    Free(P, &force[3 * a], &b[3 * a]);
+    for (int k = 0; k < 3; k++) b[3 * a + k] *= 0.5 * r->dt_step;
+  }
   PetscCall(VecRestoreArrayWrite(r->rhs, &b));
   PetscCall(KSPSolve(r->ksp, r->rhs, r->solution));
   PetscCall(VecGetArrayRead(r->solution, &z));
