@@ -69,6 +69,7 @@ const SceneSection CouplerSchema[] = {
   {"body",     TLEDKeys,     NULL,       "bodies",    "an elastic body"},
   {"material", TLEDMaterialKeys, "body", "materials", "an elastic material of a part of a body"},
   {"constraint", TLEDConstraintKeys, "body", "constraints", "a support of a body: what is held or moved"},
+  {"load",     TLEDLoadKeys, "body",     "loads",     "a load on a body"},
   {"proxy",    ProxyKeys,    "body",     NULL,        "surface proxies of a body"},
   {"obstacle", ObstacleKeys, NULL,       "obstacles", "a rigid obstacle at rest"},
   {"proxy",    ProxyKeys,    "obstacle", NULL,        "surface proxies of an obstacle"},

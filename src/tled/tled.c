@@ -63,8 +63,8 @@ PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params)
 }
 
 /*@
-  TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys), and of the materials and supports that they
-  name, -<name>_<material>_<key> (TLEDMaterialKeys), -<name>_<constraint>_<key> (TLEDConstraintKeys)
+  TLEDSetFromOptions - parameters from the options database, -<name>_<key> (TLEDKeys), and of the materials, supports and loads that they
+  name, -<name>_<material>_<key> (TLEDMaterialKeys), -<name>_<constraint>_<key> (TLEDConstraintKeys), -<name>_<load>_<key> (TLEDLoadKeys)
 @*/
 PetscErrorCode TLEDSetFromOptions(TLED tled)
 {
@@ -82,6 +82,7 @@ PetscErrorCode TLEDSetFromOptions(TLED tled)
     PetscCall(TLEDAddMaterial(tled, names->name[i], &material));
   }
   PetscCall(TLEDConstraintsFromOptions_Private(tled));
+  PetscCall(TLEDLoadsFromOptions_Private(tled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -192,7 +193,8 @@ PetscErrorCode TLEDSetUp(TLED tled)
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(TLEDConstraintsSetUp_Private(tled));
   ByCall(PickWetted(tled));
-  tled->is_free = (PetscBool)(tled->constraints.n_held == 0);
+  ByCall(TLEDLoadsSetUp_Private(tled));
+  tled->is_free = (PetscBool)(tled->constraints.n_held == 0 && tled->loads.n == 0);
   PetscCall(TLEDLumpMass_Private(tled));
   PetscCall(SetUpLoops(tled));
   PetscCall(CreateVectors(tled));
@@ -234,6 +236,12 @@ PetscErrorCode TLEDView(TLED tled, PetscViewer viewer)
     PetscCall(KeysView(TLEDConstraintKeys, &tled->constraints.item[i].params, viewer));
     PetscCall(PetscViewerASCIIPopTab(viewer));
   }
+  for (PetscInt i = 0; i < tled->loads.n; i++) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "load %s:\n", tled->loads.item[i].key));
+    PetscCall(PetscViewerASCIIPushTab(viewer));
+    PetscCall(KeysView(TLEDLoadKeys, &tled->loads.item[i].params, viewer));
+    PetscCall(PetscViewerASCIIPopTab(viewer));
+  }
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -256,6 +264,7 @@ PetscErrorCode TLEDDestroy(TLED *tled)
   PetscCall(PetscFree(t->mass));
   PetscCall(PetscFree2(t->motion, t->constrained));
   PetscCall(TLEDConstraintsDestroy_Private(&t->constraints));
+  PetscCall(TLEDLoadsDestroy_Private(&t->loads));
   PetscCall(VecDestroy(&t->u));
   PetscCall(VecDestroy(&t->v));
   PetscCall(VecDestroy(&t->f));

@@ -46,6 +46,7 @@ typedef struct {
   Names     fixed;                    /* physical groups held                                                */
   Names     prescribed;               /* physical groups moved                                               */
   Names     constraints;              /* supports, a section each (TLEDConstraintParams)                     */
+  Names     loads;                    /* a section each (TLEDLoadParams)                                     */
   Names     wetted;                   /* surface groups in contact with fluid; empty = whole boundary        */
   int       element;   /* TLEDElement; auto = t10 on a second-order mesh, else anp above nu 0.4, else t4 */
   int       quadrature; /* TLEDQuadrature: integration points of t10                                  */
@@ -65,7 +66,18 @@ typedef struct {
   CourseParams course;
 } TLEDConstraintParams;
 
-BY_EXTERN const Key TLEDKeys[], TLEDMaterialKeys[], TLEDConstraintKeys[];
+/* A load: the section `<body>.<name>` for each name in the body's key `loads`; several kinds may be given. */
+typedef struct {
+  Names        groups;        /* physical groups; none: a force at a place                          */
+  PetscReal    pressure;      /* [Pa] on the current surface, times the course                      */
+  PetscReal    traction[3];   /* [Pa] per reference area                                            */
+  PetscReal    body_force[3]; /* [N/m^3] per reference volume                                       */
+  PetscReal    force[3];      /* [N] in all                                                         */
+  Reals        at;            /* place [m] whose nearest node takes the force                       */
+  CourseParams course;
+} TLEDLoadParams;
+
+BY_EXTERN const Key TLEDKeys[], TLEDMaterialKeys[], TLEDConstraintKeys[], TLEDLoadKeys[];
 
 /* life: Create -> GetParams/SetFromOptions (options prefix "<body>_") -> SetGravity -> SetUp -> Advance -> Destroy.
    SetUp reads the mesh through DMPlex; user errors (missing mesh, no such group, not tetrahedra, inverted element) are
@@ -78,6 +90,8 @@ BY_EXTERN PetscErrorCode TLEDSetFromOptions(TLED tled);
 BY_EXTERN PetscErrorCode TLEDAddMaterial(TLED tled, const char name[], const TLEDMaterialParams *params);
 /* a support, before SetUp, beside those that SetFromOptions finds */
 BY_EXTERN PetscErrorCode TLEDAddConstraint(TLED tled, const char name[], const TLEDConstraintParams *params);
+/* a load, the same way */
+BY_EXTERN PetscErrorCode TLEDAddLoad(TLED tled, const char name[], const TLEDLoadParams *params);
 BY_EXTERN PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3]);
 BY_EXTERN PetscErrorCode TLEDSetUp(TLED tled);
 BY_EXTERN PetscErrorCode TLEDView(TLED tled, PetscViewer viewer);
@@ -94,7 +108,7 @@ BY_EXTERN PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n,
 BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
 /* mass that mass scaling added: [kg], and per cent of the mass before; either may be NULL */
 BY_EXTERN PetscErrorCode TLEDGetAddedMass(TLED tled, PetscReal *mass, PetscReal *percent);
-BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* no fixed or prescribed node        */
+BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* nothing but f and gravity acts: no support, no load */
 /* n_nodes: which nodes are not entirely free: held in some direction, or moved */
 BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]);
 /* projector of a node onto its free directions, 3 x 3 row-major, borrowed; NULL when it is entirely free */
@@ -144,7 +158,7 @@ BY_EXTERN PetscErrorCode TLEDResponse(TLED tled, Vec u, Mat *K);
 
 typedef struct {
   PetscReal kinetic, strain, gravity_potential; /* [J]                                      */
-  PetscReal damping_loss, external_work;        /* [J] since the start; of f and supports   */
+  PetscReal damping_loss, external_work;        /* [J] since the start; of f, loads and supports */
   PetscReal support_work;                       /* [J] the supports' part of external_work  */
   PetscReal momentum[3], angular[3];            /* about the origin                         */
   PetscReal volume, volume_reference;           /* [m^3]                                    */

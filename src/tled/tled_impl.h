@@ -140,11 +140,33 @@ typedef struct {
   PetscBool       moves;      /* some node is moved                                                  */
 } TLEDConstraints;
 
+/* A load of the scene. */
+typedef struct {
+  char           key[2 * BY_NAME_MAX + 2]; /* section, "block.push" */
+  TLEDLoadParams params;
+  Course         course;
+} TLEDLoad;
+
+/* All loads, sorted by nodes. */
+typedef struct {
+  PetscInt  n;
+  TLEDLoad *item;
+  double   *scale;       /* n: courses at the time last asked for                               */
+  int      *dead_offset; /* n_nodes + 1, into dead_load and dead: forces that do not follow     */
+  int      *dead_load;
+  double   *dead;        /* x 3 [N], where the course is 1                                      */
+  int       n_faces;     /* under pressure; a face may come more than once                      */
+  int      *face, *face_load; /* n_faces: number in the mesh; load                              */
+  double   *face_force;  /* n_faces x n_face_nodes x 3 [N]                                      */
+  int      *slot_offset; /* n_nodes + 1, into slot                                              */
+  int      *slot;        /* places of the node in face_force, in threes                         */
+} TLEDLoads;
+
 /* State that Advance changes; u and v apart (they are Vecs). */
 typedef struct {
   PetscReal time;          /* [s]                                                                   */
   PetscReal damping_loss;  /* by mass-proportional damping [J]                                      */
-  PetscReal external_work; /* by f [J]                                                              */
+  PetscReal external_work; /* by f and the loads [J]                                                              */
   PetscReal support_work;  /* by the supports [J]                                                   */
   PetscReal internal_work; /* by the internal forces including stiffness damping [J]; only with it  */
   PetscReal moment[3];     /* of the external forces in the last Advance, about the origin [N m s]; free bodies only */
@@ -170,6 +192,7 @@ struct _p_TLED {
   PetscBool   *constrained;    /* n_nodes                                                     */
   signed char *motion;         /* n_nodes: TLED_FREE, TLED_FIXED at rest, TLED_HELD any other */
   TLEDConstraints constraints;
+  TLEDLoads    loads;
   PetscBool    is_free;
   TLEDBlocks   blocks;
   TLEDLoops    loops;
@@ -250,6 +273,12 @@ PetscErrorCode TLEDPrescribed_Private(TLED tled, PetscReal t, PetscReal u[], Pet
 const double  *TLEDConstraintProjector_Private(TLED tled, PetscInt node); /* 3 x 3; NULL: all directions are free */
 /* tled_load.c */
 /* f = f (the Vec) + m g + loads + contact at time t and displacement u, n_nodes x 3, not projected */
+PetscErrorCode TLEDLoadsFromOptions_Private(TLED tled);
+PetscErrorCode TLEDLoadsSetUp_Private(TLED tled);
+PetscErrorCode TLEDLoadsDestroy_Private(TLEDLoads *loads);
+void           TLEDLoadsAt_Private(TLEDLoads *loads, PetscReal t);
+void           TLEDFaceForces_OpenMP(const TLEDLoads *loads, const TLEDMesh *mesh, const double u[]);
+void           TLEDAddLoads_Private(const TLEDLoads *loads, int a, double f[3]);
 PetscErrorCode TLEDExternalForces_Private(TLED tled, PetscReal t, const PetscReal u[], PetscReal f[]);
 /* add(ctx, a, b, K): the 3 x 3 blocks of -df_ext/du, row node a, column node b, of what follows the surface; may come more than once */
 typedef PetscErrorCode (*TLEDAddBlock)(void *ctx, PetscInt a, PetscInt b, const PetscReal K[9]);

@@ -51,7 +51,7 @@ PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ TLEDIsFree - whether no node is fixed or prescribed @*/
+/*@ TLEDIsFree - whether nothing but f and gravity acts on the body: no support, no load @*/
 PetscErrorCode TLEDIsFree(TLED tled, PetscBool *is_free)
 {
   PetscFunctionBegin;

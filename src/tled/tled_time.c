@@ -73,33 +73,43 @@ typedef struct {
 } Work;
 
 /* a node that is held or moved: its part of the support's motion, then the step */
-static void OpenHeld(TLED tled, const Work *w, int a, const double force[3], double u[3], double v[3], double sum[])
+static void OpenHeld(TLED tled, const Work *w, int a, const double force[3], const double f_ext[3], double u[3], double v[3], double sum[])
 {
   const TLEDHeld *h = &tled->constraints.held[tled->constraints.held_of[a]];
   double          target[3];
 
   TLEDHeldPart(h, tled->constraints.next, &tled->mesh.X[3 * a], TLED_MOTION_DISPLACEMENT, target);
-  TLEDStepOpenHeld(&w->step, h->P, target, tled->mass[a], force, &w->f[3 * a], u, v, sum);
+  TLEDStepOpenHeld(&w->step, h->P, target, tled->mass[a], force, f_ext, u, v, sum);
 }
 
-static void CloseHeld(TLED tled, const Work *w, int a, const double force[3], double v[3], double sum[])
+static void CloseHeld(TLED tled, const Work *w, int a, const double force[3], const double f_ext[3], double v[3], double sum[])
 {
   const TLEDHeld *h = &tled->constraints.held[tled->constraints.held_of[a]];
   double          velocity[3];
 
   TLEDHeldPart(h, tled->constraints.now, &tled->mesh.X[3 * a], TLED_MOTION_VELOCITY, velocity);
-  TLEDStepCloseHeld(&w->step, h->P, velocity, tled->mass[a], force, &w->f[3 * a], v, sum);
+  TLEDStepCloseHeld(&w->step, h->P, velocity, tled->mass[a], force, f_ext, v, sum);
 }
 
-/* the supports' motion at the end of substep s, counted from `start`, and of the one after; by one thread */
-static void MoveSupports(TLED tled, const Work *w, PetscInt s)
-{
-  TLEDConstraints *c      = &tled->constraints;
-  TLEDMotion      *passed = c->now;
+/* time at the end of substep s, counted from `start`; exactly `end` for the last */
+static PetscReal TimeAfter(const Work *w, PetscInt s) { return s + 1 < w->left ? w->start + (PetscReal)(s + 1) * w->step.dt : w->end; }
 
-  c->now  = c->next;
-  c->next = passed;
-  TLEDMotionsAt_Private(c, s + 2 < w->left ? w->start + (PetscReal)(s + 2) * w->step.dt : w->end, c->next);
+/* What follows a course at the end of substep s: the supports' motion then and after the next substep, and the loads. All threads
+   call it. */
+static void FollowCourses(TLED tled, const Work *w, PetscInt s)
+{
+  TLEDConstraints *c = &tled->constraints;
+
+  if (!c->moves && !tled->loads.n) return;
+#pragma omp single
+  {
+    TLEDMotion *passed = c->now;
+    c->now             = c->next;
+    c->next            = passed;
+    if (c->moves) TLEDMotionsAt_Private(c, TimeAfter(w, s + 1), c->next);
+    if (tled->loads.n) TLEDLoadsAt_Private(&tled->loads, TimeAfter(w, s));
+  }
+  if (tled->loads.n_faces) TLEDFaceForces_OpenMP(&tled->loads, &tled->mesh, w->u);
 }
 
 /* One pass over the nodes, chunk by chunk: close the substep before (gathering its forces) and open the next. All threads
@@ -115,20 +125,26 @@ static void NodePass(TLED tled, const Work *w, int close, int open)
     double   *sum = &tled->sums[TLED_SUMS * chunk];
     const int end = (chunk + 1) * TLED_CHUNK < n ? (chunk + 1) * TLED_CHUNK : n;
     for (int a = chunk * TLED_CHUNK; a < end; a++) {
-      double *force = &tled->force[3 * a], *u = &w->u[3 * a], *v = &w->v[3 * a];
+      double       *force = &tled->force[3 * a], *u = &w->u[3 * a], *v = &w->v[3 * a], loaded[3];
+      const double *f_ext = &w->f[3 * a];
+      if (tled->loads.n) {
+        for (int i = 0; i < 3; i++) loaded[i] = f_ext[i];
+        TLEDAddLoads_Private(&tled->loads, a, loaded);
+        f_ext = loaded;
+      }
       if (close) {
         double f[3] = {0.0, 0.0, 0.0};
         for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++)
           for (int i = 0; i < 3; i++) f[i] += loops->partial[3 * b->slot[k] + i];
         for (int i = 0; i < 3; i++) force[i] = f[i];
-        if (tled->motion[a] == TLED_FREE) TLEDStepClose(&w->step, tled->mass[a], force, &w->f[3 * a], v, sum);
-        else if (tled->motion[a] == TLED_HELD) CloseHeld(tled, w, a, force, v, sum);
-        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, &w->f[3 * a], sum);
+        if (tled->motion[a] == TLED_FREE) TLEDStepClose(&w->step, tled->mass[a], force, f_ext, v, sum);
+        else if (tled->motion[a] == TLED_HELD) CloseHeld(tled, w, a, force, f_ext, v, sum);
+        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, f_ext, sum);
       }
       if (open) {
-        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, &w->f[3 * a], sum);
-        if (tled->motion[a] == TLED_FREE) TLEDStepOpen(&w->step, tled->mass[a], force, &w->f[3 * a], u, v, sum);
-        else if (tled->motion[a] == TLED_HELD) OpenHeld(tled, w, a, force, u, v, sum);
+        if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, f_ext, sum);
+        if (tled->motion[a] == TLED_FREE) TLEDStepOpen(&w->step, tled->mass[a], force, f_ext, u, v, sum);
+        else if (tled->motion[a] == TLED_HELD) OpenHeld(tled, w, a, force, f_ext, u, v, sum);
         for (int i = 0; i < 3 && w->beta > 0.0; i++) w->probe[3 * a + i] = u[i] + w->beta * v[i];
       }
     }
@@ -143,16 +159,10 @@ static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
 #pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
   {
     PetscInt s;
-    if (tled->constraints.moves) {
-#pragma omp single
-      MoveSupports(tled, w, -1);
-    }
+    FollowCourses(tled, w, -1);
     NodePass(tled, w, 0, 1);
     for (s = 0; s < m; s++) {
-      if (tled->constraints.moves) {
-#pragma omp single
-        MoveSupports(tled, w, s);
-      }
+      FollowCourses(tled, w, s);
       TLEDElementForces_OpenMP(&tled->loops, w->beta > 0.0 ? w->probe : w->u);
       if (TLEDElementsBroken_OpenMP(&tled->loops)) break; /* the same answer on every thread */
       NodePass(tled, w, 1, s + 1 < m);
