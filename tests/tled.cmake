@@ -30,3 +30,4 @@ set_property(TEST fuzz.tled_mesh APPEND PROPERTY ENVIRONMENT "ASAN_OPTIONS=detec
 # the implicit solver and natural frequencies; 77 = built without SLEPc
 byssus_test(unit/tled/test_modes base tled)
 set_tests_properties(unit.tled.modes PROPERTIES SKIP_RETURN_CODE 77)
+byssus_test(convergence/test_tled_static base tled)
