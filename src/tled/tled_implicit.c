@@ -4,6 +4,7 @@
 #define ROUND_OFF 1e-6 /* times tolerance times stiffness times displacement: what is left of a force by round-off, added to the scale */
 #define STALLED   1e-7 /* residual over forces at which a Newton step of the size of round-off is the end */
 
+#define GROWTH    10.0 /* of the residual after the first Newton step at which it is given up */
 #define CUTS      8    /* halvings of a Newton step that inverts an element */
 
 #define ROW(key, type, unit, def, lo, hi, flags, help) \
@@ -294,7 +295,21 @@ static PetscErrorCode FormTangent(SNES snes, Vec x, Mat A, Mat P, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* the end of Newton's method: residual over the forces that make it up, or nothing left to gain */
+/* Is Newton's method lost? The first full step of a body that bends makes the residual larger, those after it must not, and four of
+   them must halve it (measured: where they do not, thirty do not converge either). */
+static PetscBool Lost(TLEDImplicit im, PetscInt it, PetscReal f)
+{
+  PetscReal *past = im->past;
+  PetscBool  lost = PETSC_FALSE;
+
+  if (it >= 2 && f > GROWTH * PetscMax(past[0], past[1])) lost = PETSC_TRUE;
+  if (it >= 6 && f > 0.5 * past[2 + it % PAST]) lost = PETSC_TRUE;
+  if (it < 2) past[it] = f;
+  past[2 + it % PAST] = f;
+  return lost;
+}
+
+/* the end of Newton's method: residual over the forces that make it up, nothing left to gain, or no hope */
 static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal x, PetscReal step, PetscReal f, SNESConvergedReason *reason,
                                       void *ctx)
 {
@@ -308,6 +323,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal x, Petsc
   if (PetscIsInfOrNanReal(f)) *reason = SNES_DIVERGED_FNORM_NAN;
   else if (f <= rtol * im->scale) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (it && f <= STALLED * im->scale && step <= 1e-14 * x) *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  else if (Lost(im, it, f)) *reason = SNES_DIVERGED_DTOL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

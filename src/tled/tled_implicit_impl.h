@@ -5,6 +5,8 @@
 #include "tled/tled_assembly.h"
 #include "tled/tled_implicit.h"
 
+#define PAST 4 /* residuals of Newton's method that are looked back at */
+
 /* What is solved for the displacement x:
      inertia M x + damping M x + f_int(y) - f_ext(time, y) + constant = 0,   y = share x + (1 - share) u0,
    in the free directions, and x = held_at in the others. Static: share 1, inertia 0. */
@@ -33,6 +35,7 @@ struct _n_TLEDImplicit {
   Mat                 K;
   PetscReal           held;   /* stiffness in place of a constrained direction's [N/m] */
   PetscReal           scale;  /* 2-norm of the forces of the last residual [N]         */
+  PetscReal           past[2 + PAST]; /* residuals: the first two, then the last ones [N] */
   TLEDImplicitProblem problem;
   PetscReal          *y;      /* n_nodes x 3: where forces are taken [m]                */
   PetscReal          *f_int, *f_ext, *residual; /* n_nodes x 3 [N]                      */
