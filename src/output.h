@@ -13,9 +13,9 @@ typedef struct {
   const PetscReal *data;       /* n x components */
 } OutputField;
 
-/* A series of one object: points (particles), a surface of triangles, or tetrahedra. */
+/* A series of one object: points (particles), a surface of triangles, or tetrahedra of first or second order. */
 typedef struct _Series *Series;
-typedef enum { SERIES_POINTS, SERIES_TRIANGLES, SERIES_TETRAHEDRA } SeriesKind;
+typedef enum { SERIES_POINTS, SERIES_TRIANGLES, SERIES_TETRAHEDRA, SERIES_TETRAHEDRA_QUADRATIC } SeriesKind;
 
 /* <directory>/<name>.vtkhdf and .xmf. Attributes (scene text, version, units) are stored once. `append`: go on after a resume, dropping
    steps later than `time`. */

@@ -20,6 +20,7 @@ const SeriesLayout series_layouts[] = {
     {"PolyData", "/VTKHDF/Vertices", "Polyvertex", 1, 1, 0},
     {"PolyData", "/VTKHDF/Polygons", "Triangle", 3, 5, 2},
     {"UnstructuredGrid", "/VTKHDF", "Tetrahedron", 4, 10, 0},
+    {"UnstructuredGrid", "/VTKHDF", "Tetrahedron_10", 10, 24, 0},
 };
 static const char *const poly_groups[] = {"/VTKHDF/Vertices", "/VTKHDF/Lines", "/VTKHDF/Polygons", "/VTKHDF/Strips"};
 
@@ -35,9 +36,11 @@ static Path In(const char group[], const char name[])
   return path;
 }
 
-static int CategoryCount(Series series) { return series->kind == SERIES_TETRAHEDRA ? 1 : 4; }
+static PetscBool IsGrid(Series series) { return (PetscBool)(series->kind >= SERIES_TETRAHEDRA); }
 
-static const char *Category(Series series, int c) { return series->kind == SERIES_TETRAHEDRA ? "/VTKHDF" : poly_groups[c]; }
+static int CategoryCount(Series series) { return IsGrid(series) ? 1 : 4; }
+
+static const char *Category(Series series, int c) { return IsGrid(series) ? "/VTKHDF" : poly_groups[c]; }
 
 static PetscErrorCode Grow(void **array, size_t *capacity, size_t n, size_t element)
 {
@@ -79,7 +82,7 @@ static PetscErrorCode CreateFile(Series series, const char scene_text[])
   OutputFileGroup(&file, "/VTKHDF/PointData");
   CreateTable(&file, "/VTKHDF", "NumberOfPoints", 1);
   for (int c = 0; c < CategoryCount(series); c++) {
-    if (series->kind != SERIES_TETRAHEDRA) OutputFileGroup(&file, Category(series, c));
+    if (!IsGrid(series)) OutputFileGroup(&file, Category(series, c));
     CreateTable(&file, Category(series, c), "NumberOfCells", 1);
     CreateTable(&file, Category(series, c), "NumberOfConnectivityIds", 1);
   }
@@ -214,7 +217,7 @@ static void Shrink(Series series, OutputFile *file)
     if (rows < 0) continue; // a file without steps
     OutputFileResize(file, In(Category(series, c), "Offsets").text, (size_t)(used ? cells : 0) + series->n_parts);
     OutputFileResize(file, In(Category(series, c), "Connectivity").text, (size_t)(used ? cells * layout->nodes : 0));
-    if (series->kind == SERIES_TETRAHEDRA) OutputFileResize(file, "/VTKHDF/Types", (size_t)cells);
+    if (IsGrid(series)) OutputFileResize(file, "/VTKHDF/Types", (size_t)cells);
   }
   if (series->has_sets) OutputFileResize(file, "/VTKHDF/Points", (size_t)points);
   for (PetscInt f = 0; f < series->n_fields; f++) {
@@ -317,7 +320,7 @@ PetscErrorCode SeriesSetDoublePrecision(Series series, PetscBool flag)
   Input Parameters:
 + series  - of triangles or tetrahedra
 . n_cells - how many
-- cells   - point numbers from 0, n_cells x 3 or n_cells x 4, copied
+- cells   - point numbers from 0, n_cells x 3, 4 or 10 (VTK's order), copied
 @*/
 PetscErrorCode SeriesSetCells(Series series, PetscInt n_cells, const PetscInt cells[])
 {
@@ -391,7 +394,7 @@ static PetscErrorCode AddPart(Series series, OutputFile *file, PetscInt n)
     OutputFileAppend(file, In(group, "Offsets").text, H5T_NATIVE_INT64, (size_t)m + 1, offsets);
     OutputFileAppend(file, In(group, "Connectivity").text, id_type, (size_t)m_ids, ids);
   }
-  if (series->kind == SERIES_TETRAHEDRA) OutputFileAppend(file, "/VTKHDF/Types", H5T_NATIVE_UCHAR, (size_t)n_cells, types);
+  if (IsGrid(series)) OutputFileAppend(file, "/VTKHDF/Types", H5T_NATIVE_UCHAR, (size_t)n_cells, types);
   PetscCall(PetscFree3(offsets, ids, types));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -413,7 +416,7 @@ static PetscErrorCode CreateSets(Series series, OutputFile *file, PetscInt n, Pe
     OutputFileCreateSet(file, In(Category(series, c), "Connectivity").text, H5T_STD_I64LE, 1,
                         used ? n_cells * (size_t)layout->nodes : STEP_CHUNK, used);
   }
-  if (series->kind == SERIES_TETRAHEDRA) OutputFileCreateSet(file, "/VTKHDF/Types", H5T_STD_U8LE, 1, n_cells, PETSC_TRUE);
+  if (IsGrid(series)) OutputFileCreateSet(file, "/VTKHDF/Types", H5T_STD_U8LE, 1, n_cells, PETSC_TRUE);
   OutputFileCreateSet(file, "/VTKHDF/Points", type, 3, rows, PETSC_TRUE);
   OutputFileSetText(file, "/VTKHDF/Points", "units", "m");
   for (PetscInt f = 0; f < n_fields; f++) {

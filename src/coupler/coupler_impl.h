@@ -50,8 +50,9 @@ typedef struct {
   char        name[BY_NAME_MAX];
   ProbeParams params;
   PetscInt    surface; /* body or obstacle; -1 - wall for a wall; PETSC_MIN_INT for the water */
-  PetscInt    node[4];
-  PetscReal   weight[4];
+  PetscInt    n_nodes; /* of the element that holds the point, 4 or 10 */
+  PetscInt    node[10];
+  PetscReal   weight[10];
 } CouplerProbe;
 
 typedef enum { PHASE_NEIGHBOURS, PHASE_PRESSURE, PHASE_PROXIES, PHASE_TRANSFER, PHASE_SOLID, PHASE_OUTPUT, N_PHASES } CouplerPhase;

@@ -1,35 +1,60 @@
 /* coupler_probes.c - gauges: points of bodies, pressure and velocity of the water, its height, force on bodies, obstacles and walls. */
 #include "coupler_impl.h"
-#include "mat3.h"
+#include "tled/tled_t10.h"
 
 #define WATER PETSC_MIN_INT
 
-/* Barycentric place of a point of the undeformed body: the tetrahedron that holds it, else (up to a tenth of the body's size away) the
-   nearest node. */
+/* Barycentric coordinates L of a point in the tetrahedron of four vertices, false when it is flat; with ten nodes those at which the
+   quadratic map from L to places meets the point, by Newton's method. */
+static PetscBool PlaceInElement(PetscInt n_nodes, const PetscReal X[], const PetscReal at[3], PetscReal L[4])
+{
+  double D[9], inverse[9], r[3], w[3], N[10];
+
+  for (int a = 0; a < 3; a++) {
+    for (int k = 0; k < 3; k++) D[3 * k + a] = X[3 * (a + 1) + k] - X[k];
+  }
+  if (Invert3(D, inverse) == 0.0) return PETSC_FALSE;
+  Sub3(at, X, r);
+  Mul3(inverse, r, w);
+  for (int a = 0; a < 3; a++) L[a + 1] = w[a];
+  L[0] = 1.0 - w[0] - w[1] - w[2];
+  for (int pass = 0; pass < 8 && n_nodes == 10; pass++) {
+    for (int a = 0; a < 4; a++)
+      if (L[a] < -1.0 || L[a] > 2.0) return PETSC_FALSE; /* far outside, also of a curved element */
+    TLEDShapeT10(L, N);
+    for (int k = 0; k < 3; k++) {
+      r[k] = at[k];
+      for (int a = 0; a < 10; a++) r[k] -= N[a] * X[3 * a + k];
+    }
+    if (TLEDJacobianT10(L, X, inverse) == 0.0) return PETSC_FALSE;
+    Mul3(inverse, r, w);
+    for (int a = 0; a < 3; a++) L[a + 1] += w[a];
+    L[0] = 1.0 - L[1] - L[2] - L[3];
+  }
+  return PETSC_TRUE;
+}
+
+/* Place of a point of the undeformed body, as weights of an element's nodes: the shape functions of the tetrahedron that holds it, else
+   (up to a tenth of the body's size away) the nearest node. */
 static PetscErrorCode LocatePoint(CouplerSurface *s, const char key[], const PetscReal at[3], CouplerProbe *probe)
 {
-  PetscInt         n_nodes, n_tets;
+  PetscInt         n_nodes, n_tets, n;
   const PetscInt  *tets;
   const PetscReal *X;
   PetscReal        nearest = PETSC_MAX_REAL, low[3], high[3], size = 0.0;
 
   PetscFunctionBegin;
   PetscCall(TLEDGetSize(s->tled, &n_nodes, &n_tets));
-  PetscCall(TLEDGetMesh(s->tled, NULL, &tets, &X));
+  PetscCall(TLEDGetMesh(s->tled, &n, &tets, &X));
+  probe->n_nodes = n;
   for (PetscInt e = 0; e < n_tets; e++) {
-    const PetscInt *n = &tets[4 * e];
-    double          D[9], inverse[9], r[3], w[3];
+    PetscReal x[30], L[4];
 
-    for (int a = 0; a < 3; a++) {
-      for (int k = 0; k < 3; k++) D[3 * k + a] = X[3 * n[a + 1] + k] - X[3 * n[0] + k];
-    }
-    if (Invert3(D, inverse) == 0.0) continue;
-    Sub3(at, &X[3 * n[0]], r);
-    Mul3(inverse, r, w);
-    if (w[0] < -1e-9 || w[1] < -1e-9 || w[2] < -1e-9 || w[0] + w[1] + w[2] > 1.0 + 1e-9) continue;
-    for (int a = 0; a < 4; a++) probe->node[a] = n[a];
-    probe->weight[0] = 1.0 - w[0] - w[1] - w[2];
-    for (int a = 0; a < 3; a++) probe->weight[a + 1] = w[a];
+    for (PetscInt k = 0; k < 3 * n; k++) x[k] = X[3 * tets[n * e + k / 3] + k % 3];
+    if (!PlaceInElement(n, x, at, L) || !(L[0] > -1e-9 && L[1] > -1e-9 && L[2] > -1e-9 && L[3] > -1e-9)) continue;
+    for (PetscInt a = 0; a < n; a++) probe->node[a] = tets[n * e + a];
+    if (n == 10) TLEDShapeT10(L, probe->weight);
+    else PetscCall(PetscArraycpy(probe->weight, L, 4));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (int k = 0; k < 3; k++) {
@@ -46,7 +71,7 @@ static PetscErrorCode LocatePoint(CouplerSurface *s, const char key[], const Pet
     }
     if (Norm3(r) >= nearest) continue;
     nearest = Norm3(r);
-    for (int b = 0; b < 4; b++) {
+    for (PetscInt b = 0; b < n; b++) {
       probe->node[b]   = a;
       probe->weight[b] = b == 0;
     }
@@ -150,14 +175,13 @@ PetscErrorCode CouplerProbeHeaders(Coupler c, PetscInt *n, char headers[][2 * BY
 static PetscErrorCode BodyPoint(CouplerSurface *s, const CouplerProbe *probe, PetscReal value[3])
 {
   const PetscReal *x, *v, *X;
-  const PetscInt  *tets;
 
   PetscFunctionBegin;
   PetscCall(TLEDGetPositions(s->tled, &x, &v));
-  PetscCall(TLEDGetMesh(s->tled, NULL, &tets, &X));
+  PetscCall(TLEDGetMesh(s->tled, NULL, NULL, &X));
   for (int k = 0; k < 3; k++) {
     value[k] = 0.0;
-    for (int a = 0; a < 4; a++) {
+    for (PetscInt a = 0; a < probe->n_nodes; a++) {
       const PetscInt i = 3 * probe->node[a] + k;
 
       value[k] += probe->weight[a] * (probe->params.quantity == PROBE_VELOCITY ? v[i] : x[i] - X[i]);

@@ -36,13 +36,12 @@ PetscErrorCode CouplerResultsCreate(Coupler c, const char directory[], const cha
     char            name[2 * BY_NAME_MAX];
 
     if (s->tled) {
-      PetscInt         n_nodes, n_tets;
-      const PetscInt  *tets;
-      const PetscReal *X;
+      PetscInt        n_nodes, n_tets, n_corners;
+      const PetscInt *tets;
 
       PetscCall(TLEDGetSize(s->tled, &n_nodes, &n_tets));
-      PetscCall(TLEDGetMesh(s->tled, NULL, &tets, &X));
-      ByCall(SeriesCreate(directory, s->name, SERIES_TETRAHEDRA, scene, append, c->time, &r->body[k]));
+      PetscCall(TLEDGetMesh(s->tled, &n_corners, &tets, NULL));
+      ByCall(SeriesCreate(directory, s->name, n_corners == 4 ? SERIES_TETRAHEDRA : SERIES_TETRAHEDRA_QUADRATIC, scene, append, c->time, &r->body[k]));
       ByCall(SeriesSetCells(r->body[k], n_tets, tets));
     } else {
       ByCall(SeriesCreate(directory, s->name, SERIES_TRIANGLES, scene, append, c->time, &r->body[k]));

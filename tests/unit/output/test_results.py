@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy as np
 
-CELLS = {"fluid": ("PolyData", "Vertices", 1), "cylinder": ("PolyData", "Polygons", 3), "flap": ("UnstructuredGrid", None, 4), "cut": ("UnstructuredGrid", None, 4)}
+CELLS = {"fluid": ("PolyData", "Vertices", 1), "cylinder": ("PolyData", "Polygons", 3), "flap": ("UnstructuredGrid", None, 4), "cut": ("UnstructuredGrid", None, 4), "curved": ("UnstructuredGrid", None, 10)}
 FLUID_COUNTS = [5, 5, 7, 5]
 
 
@@ -104,7 +104,7 @@ class Results(unittest.TestCase):
         return values
 
     def test_every_time_of_the_xdmf_has_the_values(self):
-        for name, shape in (("fluid", "Polyvertex"), ("flap", "Tetrahedron"), ("cylinder", "Triangle")):
+        for name, shape in (("fluid", "Polyvertex"), ("flap", "Tetrahedron"), ("cylinder", "Triangle"), ("curved", "Tetrahedron_10")):
             root = self.open(name)
             series = ElementTree.parse(os.path.join(self.folder.name, name + ".xmf")).find("Domain/Grid")
             self.assertEqual(series.get("CollectionType"), "Temporal")
@@ -122,6 +122,23 @@ class Results(unittest.TestCase):
                 if name == "fluid":
                     for expected, values in zip(water(s, FLUID_COUNTS[s]), (points, fields["velocity"], fields["pressure"])):
                         np.testing.assert_allclose(values, expected, rtol=2e-7, atol=1e-9)
+
+    def test_vtk_reads_quadratic_cells_in_their_order(self):
+        try:
+            from vtkmodules.vtkCommonCore import reference, vtkObject
+            from vtkmodules.vtkIOHDF import vtkHDFReader
+        except ImportError:
+            self.skipTest("no VTK for Python")
+        vtkObject.GlobalWarningDisplayOff()  # readers before 9.2 say that version 2.0 is newer than they are, and read it
+        reader = vtkHDFReader()
+        reader.SetFileName(os.path.join(self.folder.name, "curved.vtkhdf"))
+        reader.Update()
+        grid = reader.GetOutput()
+        self.assertEqual((grid.GetNumberOfCells(), grid.GetCell(0).GetCellType()), (1, 24))
+        for place in ((0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0, 0.5), (0, 0.5, 0.5)):
+            x, weights = [0.0] * 3, [0.0] * 10
+            grid.GetCell(0).EvaluateLocation(reference(0), place, x, weights)
+            self.assertEqual(tuple(x), place)
 
     def test_vtk_reads_every_time(self):
         try:

@@ -138,6 +138,25 @@ static void topology_of_a_body_is_stored_once(void **state)
   assert_true(values[0] == 10 && values[1] == 10);
 }
 
+/* one quadratic tetrahedron, its nodes in VTK's order */
+static void quadratic_cells_are_stored(void **state)
+{
+  static const PetscReal x[30] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, .5, 0, 0, .5, .5, 0, 0, .5, 0, 0, 0, .5, .5, 0, .5, 0, .5, .5};
+  static const PetscInt  cell[10] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  const OutputField      fields[1] = {{"displacement", "m", 3, x}};
+  double                 values[1];
+  Series                 series;
+
+  (void)state;
+  assert_petsc(SeriesCreate(directory, "curved", SERIES_TETRAHEDRA_QUADRATIC, "", PETSC_FALSE, 0, &series));
+  assert_petsc(SeriesSetCells(series, 1, cell));
+  for (int s = 0; s < 2; s++) assert_petsc(SeriesWrite(series, s, 10, x, 1, fields));
+  assert_petsc(SeriesDestroy(&series));
+  assert_int_equal(CountRows("curved.vtkhdf", "/VTKHDF/Connectivity"), 10);
+  ReadColumn("curved.vtkhdf", "/VTKHDF/Types", 0, 1, values);
+  assert_true(values[0] == 24);
+}
+
 static void a_resumed_series_is_the_uninterrupted_one(void **state)
 {
   static const char *const sets[] = {"/VTKHDF/Points",
@@ -505,7 +524,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(a_surface_without_fields_can_be_continued),
       cmocka_unit_test(a_resumed_series_is_the_uninterrupted_one),
       cmocka_unit_test(particles_come_back_at_every_time),
-      cmocka_unit_test(topology_of_a_body_is_stored_once),
+      cmocka_unit_test(topology_of_a_body_is_stored_once), cmocka_unit_test(quadratic_cells_are_stored),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, Begin, End);
