@@ -6,7 +6,7 @@ function(byssus_module name)
 endfunction()
 
 byssus_module(base src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/array.c src/backend.c src/surface.c src/surface_read.c src/course.c
-  src/output.c src/output_file.c src/output_series.c src/output_xdmf.c src/output_table.c src/output_progress.c src/checkpoint.c)
+  src/output.c src/output_file.c src/output_series.c src/output_xdmf.c src/output_table.c src/output_progress.c src/plot.c src/checkpoint.c)
 
 # results and checkpoints name the program's version
 set_source_files_properties(src/output_series.c src/checkpoint.c PROPERTIES COMPILE_DEFINITIONS BY_VERSION="${PROJECT_VERSION}")
@@ -23,7 +23,7 @@ if(no_git OR NOT BYSSUS_REVISION)
 endif()
 set_source_files_properties(src/backend.c PROPERTIES COMPILE_DEFINITIONS
   "BYSSUS_VERSION=\"${PROJECT_VERSION}\";BYSSUS_REVISION=\"${BYSSUS_REVISION}\"")
-set_source_files_properties(src/main.c PROPERTIES COMPILE_DEFINITIONS "BYSSUS_PLOT_PATH=\"${CMAKE_SOURCE_DIR}/src/plot/plot.py\"")
+set_source_files_properties(src/plot.c PROPERTIES COMPILE_DEFINITIONS "BYSSUS_PLOT_PATH=\"${CMAKE_SOURCE_DIR}/src/plot/plot.py\"")
 
 if(BYSSUS_SANITIZE)
   add_library(keep_loaded OBJECT tests/keep_loaded.c)

@@ -1,13 +1,13 @@
-/* main.c - the program: byssus run | check | info | plot. */
+/* main.c - the program: byssus run | check | verify | plot | info. */
 #include "backend.h"
 #include "coupler/coupler.h"
+#include "plot.h"
 #include "scene.h"
 
 #include <petscviewer.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct {
   const char *name, *arguments, *help;
@@ -39,29 +39,32 @@ static PetscErrorCode TakeResume(int *argc, char *argv[], const char **directory
   return PETSC_SUCCESS;
 }
 
+static void ReportErrors(PetscErrorCode result, PetscInt errors, const char scene[])
+{
+  if (result == BY_ERR_INPUT && !PetscGlobalRank)
+    fprintf(stderr, "%" PetscInt_FMT " error%s in %s; nothing was run\n", errors, errors == 1 ? "" : "s", scene);
+}
+
 /* read the scene, then simulate or plan; errors found behind the reader (meshes, physical groups) are counted here */
 static PetscErrorCode WithScene(int argc, char *argv[], PetscBool simulate)
 {
   const char    *resume;
   Scene          scene;
   PetscErrorCode result;
-  PetscInt       before, errors;
+  PetscInt       before;
 
   result = TakeResume(&argc, argv, &resume);
   if (!result) result = SceneRead(argv[0], argc - 1, argv + 1, CouplerSchema, &scene);
   if (result) return result;
   before = InputErrorCount();
   result = simulate ? CouplerRun(scene, resume) : CouplerCheck(scene);
-  errors = InputErrorCount() - before;
-  if (result == BY_ERR_INPUT && !PetscGlobalRank)
-    fprintf(stderr, "%" PetscInt_FMT " error%s in %s; nothing was run\n", errors, errors == 1 ? "" : "s", argv[0]);
+  ReportErrors(result, InputErrorCount() - before, argv[0]);
   if (!result) (void)SceneReportUnused(scene);
   (void)SceneDestroy(&scene);
   return result;
 }
 
 static PetscErrorCode Run(int argc, char *argv[]) { return WithScene(argc, argv, PETSC_TRUE); }
-
 static PetscErrorCode Check(int argc, char *argv[]) { return WithScene(argc, argv, PETSC_FALSE); }
 
 static PetscErrorCode Info(int argc, char *argv[])
@@ -70,9 +73,27 @@ static PetscErrorCode Info(int argc, char *argv[])
   return BackendView(PETSC_VIEWER_STDOUT_WORLD);
 }
 
+static PetscErrorCode Verify(int argc, char *argv[])
+{
+  Scene          scene;
+  PetscErrorCode result = SceneRead(argv[0], argc - 1, argv + 1, CouplerSchema, &scene);
+  PetscBool      picture;
+  PetscInt       before = InputErrorCount();
+  char           directory[PETSC_MAX_PATH_LEN];
+
+  if (result) return result;
+  result = CouplerVerify(scene, directory, &picture);
+  ReportErrors(result, InputErrorCount() - before, argv[0]);
+  if (picture && !PetscGlobalRank) PlotDirectory(directory);
+  if (!result) (void)SceneReportUnused(scene);
+  (void)SceneDestroy(&scene);
+  return result;
+}
+
 static const Command commands[] = {
     {"run", "SCENE.yaml [-resume DIR] [-key value ...]", "simulate into a run directory", Run},
     {"check", "SCENE.yaml [-key value ...]", "validate and print the plan; writes nothing", Check},
+    {"verify", "SCENE.yaml [-key value ...]", "explicit against implicit solid, same mesh: table, picture", Verify},
     {"plot", "RUN...", "pictures of runs", NULL},
     {"info", "[-keys]", "version, libraries, devices; all keys as markdown", Info},
 };
@@ -80,33 +101,18 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static int Help(void)
 {
-  for (int i = 0; i < N_COMMANDS; i++) printf("byssus %-5s %-42s %s\n", commands[i].name, commands[i].arguments, commands[i].help);
-  printf("\nExit status: 0 done, 1 failure, 2 bad input (nothing was run), 3 the simulation broke down (state saved), 130 "
+  for (int i = 0; i < N_COMMANDS; i++) printf("byssus %-6s %-42s %s\n", commands[i].name, commands[i].arguments, commands[i].help);
+  printf("\nExit status: 0 done, 1 failure, 2 bad input (nothing was run), 3 the simulation broke down (state saved) or verify "
+         "found more than its tolerance, 130 "
          "interrupted.\n\n");
   return ExitStatus(ScenePrintKeys(CouplerSchema, "text", stdout));
 }
 
 static int Usage(void)
 {
-  fprintf(stderr, "usage: byssus run|check SCENE.yaml [-key value ...]   or   byssus plot RUN...   or   byssus info\n");
+  fprintf(stderr, "usage: byssus run|check|verify SCENE.yaml [-key value ...]   or   byssus plot RUN...   or   byssus info\n");
   fprintf(stderr, "       byssus -help lists commands and keys\n");
   return BY_EXIT_INPUT;
-}
-
-/* hand over to the Python program that draws: share/byssus/plot.py of an installation, else that of the source tree */
-static int Plot(char *argv[])
-{
-  char          path[PETSC_MAX_PATH_LEN] = "", installed[PETSC_MAX_PATH_LEN + 64];
-  const ssize_t n                        = readlink("/proc/self/exe", path, sizeof path - 1);
-  char         *slash                    = n > 0 ? strrchr(path, '/') : NULL;
-
-  if (slash) *slash = 0;
-  snprintf(installed, sizeof installed, "%s/../share/byssus/plot.py", path);
-  argv[0] = (char[]){"python3"};
-  argv[1] = access(installed, R_OK) ? (char[]){BYSSUS_PLOT_PATH} : installed;
-  execv("/usr/bin/python3", argv);
-  perror("/usr/bin/python3");
-  return BY_EXIT_FAILURE;
 }
 
 static PetscBool AsksForHelp(const char word[])
@@ -128,7 +134,7 @@ int main(int argc, char *argv[])
     if (!strcmp(argv[1], commands[i].name)) command = &commands[i];
   }
   if (!command || (command->run != Info && argc < 3)) return Usage();
-  if (!command->run) return Plot(argv);
+  if (!command->run) return PlotProgram(argv);
   if (command->run != Info && argv[2][0] == '-') return Usage();
 
   /* without mpirun MPI is one process by itself: no helper daemon, and Ctrl-C and limits on files reach nobody else */

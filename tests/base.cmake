@@ -7,7 +7,6 @@ byssus_test(unit/scene/test_course base)
 
 # the command line: src/main.c with the simulation of tests/cli/sample.c
 add_executable(test.cli.sample cli/sample.c ${CMAKE_SOURCE_DIR}/src/main.c $<TARGET_OBJECTS:base>)
-target_compile_definitions(test.cli.sample PRIVATE BYSSUS_PLOT_PATH="${CMAKE_SOURCE_DIR}/src/plot/plot.py")
 target_link_libraries(test.cli.sample PRIVATE byssus_flags)
 
 # byssus_script(NAME PROGRAM): tests/cli/test_NAME.py with the path of PROGRAM in BYSSUS
@@ -20,6 +19,7 @@ byssus_script(statuses test.cli.sample)
 byssus_script(layout byssus_program)
 byssus_script(formulas byssus_program)
 byssus_script(program byssus_program)
+byssus_script(verify byssus_program)
 byssus_script(bad_input byssus_program)
 byssus_test(unit/scene/test_schema base sph tled proxy coupler)
 byssus_test(fuzz/test_scene_mutations base)

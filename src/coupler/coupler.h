@@ -61,12 +61,35 @@ typedef struct {
   int       quantity; /* ProbeQuantity */
 } ProbeParams;
 
+typedef enum { VERIFY_STATIC, VERIFY_DYNAMIC, VERIFY_BOTH, VERIFY_NONE } VerifyKind;
+
+typedef struct {
+  int       kind;              /* VerifyKind                                                              */
+  PetscReal tolerance;         /* of the static difference over the largest displacement                  */
+  PetscReal relax_tolerance;   /* relative residual at which the explicit solid counts as at rest         */
+  PetscInt  relax_steps;       /* that it may take                                                        */
+  PetscReal time;              /* static: time of loads and motions [s]                                   */
+  PetscReal duration;          /* of dynamic runs [s]                                                     */
+  Reals     steps;             /* explicit steps over the critical one, falling                           */
+  PetscReal implicit_step;     /* the same of the implicit reference, which runs at half of it too        */
+  PetscInt  samples;           /* times at which dynamic runs are compared                                */
+  PetscReal dynamic_tolerance; /* of the finest explicit run's difference                                 */
+  PetscReal order;             /* least observed order between the two finest steps; 0 = not judged       */
+  PetscInt  modes;             /* natural frequencies to be compared; 0 = none                            */
+  PetscReal modes_tolerance;   /* relative                                                                */
+  PetscReal periods;           /* of the lowest mode that the solid rings                                 */
+  PetscBool picture;
+  char      directory[PETSC_MAX_PATH_LEN];
+} VerifyParams;
+
 BY_EXTERN const SceneSection CouplerSchema[];
-BY_EXTERN const Key          RunKeys[], DomainKeys[], TopKeys[], FillKeys[], ObstacleKeys[], CouplerKeys[], ProbeKeys[];
+BY_EXTERN const Key          RunKeys[], DomainKeys[], TopKeys[], FillKeys[], ObstacleKeys[], CouplerKeys[], ProbeKeys[], VerifyKeys[];
 
 /* the program's commands: run a scene into its directory (resume: directory of an earlier run, or NULL), or print the plan */
 BY_EXTERN PetscErrorCode CouplerRun(Scene scene, const char resume[]);
 BY_EXTERN PetscErrorCode CouplerCheck(Scene scene);
+/* explicit against implicit, every body; directory: of the results, PETSC_MAX_PATH_LEN characters; picture: whether one is asked for */
+BY_EXTERN PetscErrorCode CouplerVerify(Scene scene, char directory[], PetscBool *picture);
 
 /* life: Create -> (AddBody, AddObstacle, SetFluid | SetFromOptions, which builds all of a scene from the options) -> SetUp -> Step -> Destroy.
    The coupler takes ownership of the objects handed in. */

@@ -1,5 +1,6 @@
 /* coupler_keys.c - keys of the scene that belong to no single module, and the schema of a whole scene. */
 #include "coupler/coupler.h"
+#include "tled/tled_implicit.h"
 
 #define HUGE_LENGTH 1e6 /* [m], larger than anything a particle method resolves: catches wrong units */
 #define ROW(S, f)   offsetof(S, f)
@@ -7,6 +8,7 @@
 static const char *const wall_names[]   = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
 static const char *const axis_names[]   = {"x", "y", "z", NULL};
 static const char *const scheme_names[] = {"auto", "explicit", "mass", NULL};
+static const char *const kinds[]        = {"static", "dynamic", "both", NULL};
 static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", NULL};
 
 // clang-format off
@@ -60,6 +62,22 @@ const Key ProbeKeys[] = {
   {"quantity", KEY_CHOICE, ROW(ProbeParams, quantity), "",  "displacement", 0, 0, KEY_REQUIRED, quantities, "what is measured"},
   KEY_END};
 
+const Key VerifyKeys[] = {
+  {"kind",              KEY_CHOICE, ROW(VerifyParams, kind),              "",  "static", 0, 0, 0, kinds, "what is compared: equilibrium, motion, or both"},
+  {"tolerance",         KEY_REAL,   ROW(VerifyParams, tolerance),         "1", "1e-6", 0, 1, KEY_LO_OPEN, NULL, "allowed largest nodal difference of the equilibria, over the largest displacement"},
+  {"relax_tolerance",   KEY_REAL,   ROW(VerifyParams, relax_tolerance),   "1", "1e-9", 0, 1, KEY_LO_OPEN, NULL, "relative residual at which the explicit solid counts as at rest"},
+  {"relax_steps",       KEY_INT,    ROW(VerifyParams, relax_steps),       "1", "1000000", 1, 2e9, 0, NULL, "steps that its relaxation may take"},
+  {"time",              KEY_REAL,   ROW(VerifyParams, time),              "s", "0",    0, 1e9, 0, NULL, "time of which loads and motions act in equilibrium"},
+  {"duration",          KEY_REAL,   ROW(VerifyParams, duration),          "s", "0",    0, 1e9, 0, NULL, "simulated time of the dynamic runs"},
+  {"steps",             KEY_REALS,  ROW(VerifyParams, steps),             "1", "0.8, 0.4, 0.2", 0, 1, KEY_LO_OPEN, NULL, "explicit steps over the critical one, falling"},
+  {"implicit_step",     KEY_REAL,   ROW(VerifyParams, implicit_step),     "1", "0.5",  0, 1e6, KEY_LO_OPEN, NULL, "the same of the implicit reference; it runs at half of it too, and both are extrapolated"},
+  {"samples",           KEY_INT,    ROW(VerifyParams, samples),           "1", "20",   1, 1e5, 0, NULL, "times at which dynamic runs are compared"},
+  {"dynamic_tolerance", KEY_REAL,   ROW(VerifyParams, dynamic_tolerance), "1", "1e-3", 0, 1e3, KEY_LO_OPEN, NULL, "allowed largest nodal difference of the finest explicit run, over the largest displacement"},
+  {"order",             KEY_REAL,   ROW(VerifyParams, order),             "1", "1.8",  0, 4, 0, NULL, "least order between the two finest steps; 0 = not judged"},
+  {"picture",           KEY_BOOL,   ROW(VerifyParams, picture),           "",  "true", 0, 0, 0, NULL, "draw the result"},
+  {"directory",         KEY_STRING, ROW(VerifyParams, directory),         "",  "",     0, 0, 0, NULL, "directory of the results; none = that of the run, with _verify behind it"},
+  KEY_END};
+
 const SceneSection CouplerSchema[] = {
   {"",         TopKeys,      NULL,       NULL,        "top level"},
   {"run",      RunKeys,      NULL,       NULL,        "the run and its directory"},
@@ -70,10 +88,12 @@ const SceneSection CouplerSchema[] = {
   {"material", TLEDMaterialKeys, "body", "materials", "an elastic material of a part of a body"},
   {"constraint", TLEDConstraintKeys, "body", "constraints", "a support of a body: what is held or moved"},
   {"load",     TLEDLoadKeys, "body",     "loads",     "a load on a body"},
+  {"implicit", TLEDImplicitKeys, "body", NULL,        "the implicit solver of a body (byssus verify)"},
   {"proxy",    ProxyKeys,    "body",     NULL,        "surface proxies of a body"},
   {"obstacle", ObstacleKeys, NULL,       "obstacles", "a rigid obstacle at rest"},
   {"proxy",    ProxyKeys,    "obstacle", NULL,        "surface proxies of an obstacle"},
   {"coupler",  CouplerKeys,  NULL,       NULL,        "the staggered loop"},
   {"probe",    ProbeKeys,    NULL,       "probes",    "a gauge"},
+  {"verify",   VerifyKeys,   NULL,       NULL,        "explicit against implicit solid (byssus verify)"},
   {NULL, NULL, NULL, NULL, NULL}};
 // clang-format on

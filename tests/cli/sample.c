@@ -27,6 +27,7 @@ PETSC_VISIBILITY_PUBLIC const SceneSection CouplerSchema[] = {
 
 PetscErrorCode CouplerRun(Scene scene, const char resume[]);
 PetscErrorCode CouplerCheck(Scene scene);
+PetscErrorCode CouplerVerify(Scene scene, char directory[], PetscBool *picture);
 
 PetscErrorCode CouplerRun(Scene scene, const char resume[])
 {
@@ -56,5 +57,15 @@ PetscErrorCode CouplerCheck(Scene scene)
   PetscFunctionBegin;
   (void)scene;
   printf("plan\n");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CouplerVerify(Scene scene, char directory[], PetscBool *picture)
+{
+  PetscFunctionBegin;
+  (void)scene;
+  directory[0] = 0;
+  *picture     = PETSC_FALSE;
+  printf("verified\n");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
