@@ -91,6 +91,7 @@ PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3])
 {
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(tled->gravity, g, 3));
+  tled->state.put_in = 0.0; /* another potential: the watch on the energy begins anew */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,6 +38,8 @@ typedef struct {
   PetscReal damping;                  /* alpha [1/s] of D = alpha M                                          */
   PetscReal stiffness_damping;        /* beta [s] of a stiffness-proportional viscous stress; 0 = none       */
   PetscReal safety;                   /* of the critical step                                                */
+  PetscReal step;                     /* substep [s]; 0 = from the critical step                              */
+  PetscReal step_limit;               /* [s]; the run ends when the critical step falls below it              */
   PetscReal mass_scaling;             /* critical step that short elements get mass to reach [s]; 0 = none    */
   PetscReal scale;                    /* mesh coordinates times this                                         */
   PetscReal translate[3];             /* [m], after scaling                                                  */

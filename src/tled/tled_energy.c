@@ -1,4 +1,4 @@
-/* tled_energy.c - strain energy, volume and stretches of the body, and which element broke. Not part of the step: plain scalar
+/* tled_energy.c - strain energy, volume and stretches of the body. Not part of the step: plain scalar
    loops over blocks, added block after block, so that the sums have the same bits for any number of threads. */
 #include "tled/tled_impl.h"
 
@@ -52,43 +52,4 @@ PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *ene
   if (volume) *volume = sum[1];
   if (stretch) stretch[0] = extreme[0], stretch[1] = extreme[1];
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Write the breakdown message: the first broken element in the file's numbers, its place and det F, the time. Returns
- * BY_ERR_BREAKDOWN. */
-PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscReal time)
-{
-  const TLEDBlocks *b     = &tled->blocks;
-  const TLEDMesh   *mesh  = &tled->mesh;
-  PetscInt          first = -1, n_broken = 0;
-  double            J_first = 0.0, x[3] = {0.0, 0.0, 0.0};
-
-  PetscFunctionBegin;
-  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
-    PetscBool broken = PETSC_FALSE;
-    for (int point = 0; point < b->n_points && b->element[l] >= 0 && !broken; point++) {
-      TLEDPoint p;
-      TLEDPointAt_Private(&tled->loops, mesh->tets, l, point, u, &p);
-      const double J = 1.0 + p.jm1;
-      if (J > 0.0) continue;
-      broken = PETSC_TRUE;
-      if (!n_broken++) first = b->element[l], J_first = J;
-    }
-  }
-  if (first < 0) {
-    PetscCall(PetscSNPrintf(tled->breakdown, TLED_MESSAGE, "body %s: the internal forces are not finite at time %g s",
-                            ((PetscObject)tled)->name, (double)time));
-    PetscFunctionReturn(BY_ERR_BREAKDOWN);
-  }
-  for (int a = 0; a < 4; a++) {
-    const PetscInt vertex = mesh->tets[mesh->n_corners * first + a];
-    for (int k = 0; k < 3; k++) x[k] += 0.25 * (mesh->X[3 * vertex + k] + u[3 * vertex + k]);
-  }
-  PetscCall(PetscSNPrintf(
-      tled->breakdown, TLED_MESSAGE,
-      "body %s: element %" PetscInt_FMT " of the mesh file %s at (%.4g, %.4g, %.4g) m, time %.6g s: det F = %.3g (%" PetscInt_FMT
-      " such elements)",
-      ((PetscObject)tled)->name, mesh->tag[first], PetscIsNanReal(J_first) ? "is lost (not a number)" : "turned inside out", x[0],
-      x[1], x[2], (double)time, J_first, n_broken));
-  PetscFunctionReturn(BY_ERR_BREAKDOWN);
 }

@@ -173,6 +173,8 @@ typedef struct {
   PetscReal critical;      /* critical step [s]; 0 = not known                                      */
   PetscReal stretch[2];    /* smallest det F and largest |F|^2 when it was computed                 */
   PetscReal since, look;   /* substeps taken since; how many when the deformation is looked at next  */
+  PetscReal put_in;        /* energy that the body had when the watch on it began [J]; 0 = not watched (tled_breakdown.c) */
+  PetscReal given, owned;  /* works of loads, supports and gravity then, and what it had over them [J] */
   PetscReal is_static;     /* 1: u is a static solution, in which supports give no inertia (Advance: 0) */
 } TLEDState;
 
@@ -210,6 +212,7 @@ struct _p_TLED {
   PetscReal   *sums;           /* work: n_chunks x TLED_SUMS                                  */
   PetscObjectState force_state; /* state of u for which `force` is right, with force_valid    */
   PetscBool    force_valid;
+  PetscObjectState speed_state; /* state of v that the last substep left                      */
   TLEDState    state, saved_state;
   PetscReal   *saved;          /* u, v, force, mode: 4 x (n_nodes x 3)                        */
   PetscBool    saved_valid, saved_force_valid;
@@ -251,12 +254,17 @@ int  TLEDElementsBroken_OpenMP(const TLEDLoops *loops);
 void TLEDForcesT10_OpenMP(const TLEDLoops *loops, const double u[]);
 /* tled_energy.c */
 PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *energy, PetscReal *volume, PetscReal stretch[2]);
+/* tled_breakdown.c */
 PetscErrorCode TLEDReportBroken_Private(TLED tled, const PetscReal u[], PetscReal time);
+PetscErrorCode TLEDWatch_Private(TLED tled, const PetscReal u[], const PetscReal v[], PetscReal time);
+PetscBool      TLEDIsUnstable_Private(TLED tled, PetscReal dt);
+PetscErrorCode TLEDReportUnstable_Private(TLED tled, const PetscReal u[], PetscReal time, PetscReal dt);
 /* tled_assembly.c */
 PetscErrorCode TLEDAssemblyDestroy_Private(struct TLEDAssembly **assembly);
 /* tled_mass.c */
 PetscErrorCode TLEDLumpMass_Private(TLED tled);
 PetscErrorCode TLEDScaleMass_Private(TLED tled);
+PetscReal      TLEDModeEnergy_Private(TLED tled, int lane, const PetscReal u[]); /* elastic, of an element in the highest mode */
 void           TLEDStiffnessAt_Private(TLED tled, int lane, const PetscReal u[], double K[]);
 /* tled_critical.c */
 PetscErrorCode TLEDHighestMode_Private(TLED tled, const PetscReal mass[], const PetscReal u[], PetscInt n_steps, PetscReal mode[],

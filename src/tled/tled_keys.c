@@ -42,6 +42,8 @@ const Key TLEDKeys[] = {
     ROW(damping, KEY_REAL, "1/s", "0", 0, 1e9, 0, NULL, "mass-proportional damping"),
     ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; a body in water that does not name it has 0.05 of its critical step"),
     ROW(safety, KEY_REAL, "1", "0.9", 0, 1, KEY_LO_OPEN, NULL, "time step over the critical time step"),
+    ROW(step, KEY_REAL, "s", "0", 0, 1e6, 0, NULL, "longest time step of the body; 0: safety times the critical one"),
+    ROW(step_limit, KEY_REAL, "s", "0", 0, 1e6, 0, NULL, "the run ends when the critical step falls below it; 0: none"),
     ROW(mass_scaling, KEY_REAL, "s", "0", 0, 1e6, 0, NULL,
         "critical step that the shortest elements are given mass to reach, safety not included; 0: none"),
     ROW(scale, KEY_REAL, "1", "1", 0, 1e9, KEY_LO_OPEN, NULL, "factor on the mesh's coordinates"),

@@ -150,13 +150,13 @@ static PetscErrorCode AddMass(TLED tled, const Scaling *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* elastic energy of an element in the highest mode found last */
-static PetscReal ModeEnergy(TLED tled, int l)
+/* elastic energy of an element in the highest mode found last, at displacement u as TLEDStiffnessAt_Private() */
+PetscReal TLEDModeEnergy_Private(TLED tled, int l, const PetscReal u[])
 {
   const PetscInt n = 3 * tled->mesh.n_corners, *corner = Corners(tled, l);
   double         K[MOST_ROWS * MOST_ROWS], x[MOST_ROWS], sum = 0.0;
 
-  TLEDStiffnessAt_Private(tled, l, NULL, K);
+  TLEDStiffnessAt_Private(tled, l, u, K);
   for (PetscInt i = 0; i < n; i++) x[i] = tled->mode[3 * corner[i / 3] + i % 3];
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 0; j < n; j++) sum += x[i] * K[n * i + j] * x[j];
@@ -172,7 +172,7 @@ static void TakeSlack(TLED tled, Scaling *s, PetscReal factor, PetscReal *energy
 
   for (int l = 0; l < TLED_LANES * b->n_packs && factor < NEARLY; l++) {
     if (b->element[l] < 0) continue;
-    energy[b->element[l]] = ModeEnergy(tled, l);
+    energy[b->element[l]] = TLEDModeEnergy_Private(tled, l, NULL);
     top                   = PetscMax(top, energy[b->element[l]]);
   }
   for (PetscInt e = 0; e < tled->mesh.n_tets; e++)

@@ -192,6 +192,7 @@ PetscErrorCode TLEDRestore(TLED tled)
   tled->substeps    = tled->saved_substeps;
   tled->force_valid = tled->saved_force_valid;
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &tled->force_state));
+  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &tled->speed_state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,6 +245,7 @@ PetscErrorCode TLEDSetState(TLED tled, PetscInt n, const PetscReal state[])
   PetscCall(PetscArraycpy(tled->mode, &state[N_STATE + 2], m));
   PetscCall(PetscArraycpy(tled->force, &state[N_STATE + 2 + m], m));
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &tled->force_state));
+  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &tled->speed_state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,8 +11,10 @@
 #include "mat3.h"
 
 enum { TLED_FREE = 0, TLED_FIXED = 1, TLED_HELD = 2 }; /* free; at rest; held in some direction, or moved */
-/* what a step adds up: works [J] and the moment of the external forces about the origin [N m s] */
-enum { TLED_SUM_EXTERNAL = 0, TLED_SUM_DAMPING = 1, TLED_SUM_INTERNAL = 2, TLED_SUM_MOMENT = 3, TLED_SUM_SUPPORT = 6, TLED_SUMS = 8 };
+/* what a step adds up: works [J] and the moment of the external forces about the origin [N m s]; and what the nodes have at the end of it:
+   kinetic energy and the work of gravity since u = 0 [J], and the part of the sums that belongs to the first half of the next */
+enum { TLED_SUM_EXTERNAL = 0, TLED_SUM_DAMPING = 1, TLED_SUM_INTERNAL = 2, TLED_SUM_MOMENT = 3, TLED_SUM_SUPPORT = 6,
+       TLED_SUM_KINETIC = 7, TLED_SUM_GRAVITY = 8, TLED_SUM_OPENED = 9, TLED_SUMS = 12 };
 
 typedef struct {
   double dt;           /* [s]                                                   */
@@ -97,6 +99,19 @@ BY_HD void TLEDStepCloseHeld(const TLEDStep *s, const double P[9], const double 
     sum[TLED_SUM_DAMPING] += s->alpha*m*free_v[k]*free_v[k]*h;
     v[k] = free_v[k] + velocity[k];
   }
+}
+
+/* internal and damping work over that of loads and supports, as summed up so far [J] */
+BY_HD double TLEDStepBalance(const double sum[])
+{
+  return sum[TLED_SUM_INTERNAL] + sum[TLED_SUM_DAMPING] - sum[TLED_SUM_EXTERNAL] - sum[TLED_SUM_SUPPORT];
+}
+
+/* kinetic energy of a node and gravity's work on it, of this time: added to sum */
+BY_HD void TLEDStepEnergy(const TLEDStep *s, double m, const double u[3], const double v[3], double sum[])
+{
+  sum[TLED_SUM_KINETIC] += 0.5*m*Dot3(v, v);
+  sum[TLED_SUM_GRAVITY] += m*Dot3(s->gravity, u);
 }
 
 /* moment impulse of the external force in one half kick at position X + u: sum += dt/2 (X + u) x f_ext; the drift gives none */

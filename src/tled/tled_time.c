@@ -20,11 +20,12 @@ PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* largest step that the state permits [s]: the critical one, shortened by stiffness damping, times the safety factor */
+/* largest step that the state permits [s]: the one that the user fixed, or the critical one, shortened by stiffness damping, times the safety factor */
 static PetscReal LargestStep(TLED tled)
 {
   const PetscReal critical = tled->state.critical;
 
+  if (tled->params.step > 0.0) return tled->params.step;
   if (critical == PETSC_MAX_REAL) return PETSC_MAX_REAL;
   return tled->params.safety * TLEDStableStep(critical, tled->params.stiffness_damping);
 }
@@ -124,6 +125,7 @@ static void NodePass(TLED tled, const Work *w, int close, int open)
   for (int chunk = 0; chunk < n_chunks; chunk++) {
     double   *sum = &tled->sums[TLED_SUMS * chunk];
     const int end = (chunk + 1) * TLED_CHUNK < n ? (chunk + 1) * TLED_CHUNK : n;
+    sum[TLED_SUM_KINETIC] = sum[TLED_SUM_GRAVITY] = sum[TLED_SUM_OPENED] = 0.0;
     for (int a = chunk * TLED_CHUNK; a < end; a++) {
       double       *force = &tled->force[3 * a], *u = &w->u[3 * a], *v = &w->v[3 * a], loaded[3];
       const double *f_ext = &w->f[3 * a];
@@ -140,18 +142,21 @@ static void NodePass(TLED tled, const Work *w, int close, int open)
         if (tled->motion[a] == TLED_FREE) TLEDStepClose(&w->step, tled->mass[a], force, f_ext, v, sum);
         else if (tled->motion[a] == TLED_HELD) CloseHeld(tled, w, a, force, f_ext, v, sum);
         if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, f_ext, sum);
+        TLEDStepEnergy(&w->step, tled->mass[a], u, v, sum);
       }
       if (open) {
+        const double closed = TLEDStepBalance(sum);
         if (tled->is_free) TLEDStepMoment(&w->step, &tled->mesh.X[3 * a], u, f_ext, sum);
         if (tled->motion[a] == TLED_FREE) TLEDStepOpen(&w->step, tled->mass[a], force, f_ext, u, v, sum);
         else if (tled->motion[a] == TLED_HELD) OpenHeld(tled, w, a, force, f_ext, u, v, sum);
+        sum[TLED_SUM_OPENED] += TLEDStepBalance(sum) - closed;
         for (int i = 0; i < 3 && w->beta > 0.0; i++) w->probe[3 * a + i] = u[i] + w->beta * v[i];
       }
     }
   }
 }
 
-/* m substeps; returns how many were taken whole, fewer than m when an element broke */
+/* m substeps; returns how many were taken whole, fewer than m when an element broke or the motion is unstable */
 static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
 {
   PetscInt done = m;
@@ -166,6 +171,7 @@ static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
       TLEDElementForces_OpenMP(&tled->loops, w->beta > 0.0 ? w->probe : w->u);
       if (TLEDElementsBroken_OpenMP(&tled->loops)) break; /* the same answer on every thread */
       NodePass(tled, w, 1, s + 1 < m);
+      if (TLEDIsUnstable_Private(tled, w->step.dt)) break; /* so is this */
     }
 #pragma omp single
     done = s;
@@ -182,6 +188,7 @@ static PetscErrorCode KnowForces(TLED tled, const PetscReal u[])
   PetscFunctionBegin;
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &state));
   if (tled->force_valid && state == tled->force_state) PetscFunctionReturn(PETSC_SUCCESS);
+  tled->state.put_in = 0.0; /* u was changed: its energy is another */
   ierr = TLEDForces_Private(tled, u, tled->force);
   if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, tled->state.time));
   PetscCall(ierr);
@@ -216,7 +223,9 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
   ByCall(KnowForces(tled, w->u));
   tled->force_valid = PETSC_FALSE; /* until this call has come to its end */
   do {
+    tled->state.time = start + passed;
     ByCall(RenewCritical(tled, w->u, start + passed));
+    if (tled->state.put_in == 0.0 || tled->state.since == 0.0) ByCall(TLEDWatch_Private(tled, w->u, w->v, start + passed));
     if (!left || h > LargestStep(tled) * (1.0 + 1e-9)) { /* at first, and when the body has stiffened */
       left = CountSubsteps(tled, dt - passed);
       h    = (dt - passed) / (PetscReal)left;
@@ -224,7 +233,8 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
     const PetscInt m    = PetscMin(left, RENEW_STEPS);
     w->step.dt          = h;
     w->start = start + passed, w->end = start + dt, w->left = left;
-    const PetscInt done = Substeps(tled, w, m);
+    const PetscInt  done     = Substeps(tled, w, m);
+    const PetscBool unstable = TLEDIsUnstable_Private(tled, h);
     AddWorks(tled);
     *n_substeps += done;
     tled->state.since += (PetscReal)done;
@@ -232,6 +242,7 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
     left -= done;
     if (done < m) {
       tled->state.time = start + passed + h;
+      if (unstable) PetscFunctionReturn(TLEDReportUnstable_Private(tled, w->u, start + passed + h, h));
       PetscFunctionReturn(TLEDReportBroken_Private(tled, w->beta > 0.0 ? w->probe : w->u, start + passed + h));
     }
   } while (left);
@@ -256,7 +267,8 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
   Central differences in velocity form (tled_step.h, method 3): the fewest equal substeps not longer than safety times the critical
   step; u and v are at the same time before and after. With stiffness damping beta, the internal forces are taken at u + beta v.
 
-  Errors: BY_ERR_BREAKDOWN when an element turns inside out or a number is lost; TLEDGetBreakdown() tells which, where and when
+  Errors: BY_ERR_BREAKDOWN when an element turns inside out, a number is lost, the motion is unstable (tled_breakdown.c) or the critical
+  step is below the key step_limit; TLEDGetBreakdown() tells which, where and when
 
   Cost: one force evaluation per substep, no allocation.  Tests: tests/unit/tled/test_time.c
 
@@ -267,6 +279,7 @@ PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps)
   const TLEDParams *p = &tled->params;
   Work              w;
   PetscInt          n = 0, k;
+  PetscObjectState  speed_state;
   PetscErrorCode    ierr;
 
   PetscFunctionBegin;
@@ -274,6 +287,8 @@ PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps)
   PetscCheck(dt > 0.0 && !PetscIsInfOrNanReal(dt), PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_OUTOFRANGE,
              "dt = %g, expected a finite number > 0 [s]", (double)dt);
   PetscCall(PetscLogEventBegin(TLED_EVENT_ADVANCE, tled, 0, 0, 0));
+  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &speed_state));
+  if (speed_state != tled->speed_state) tled->state.put_in = 0.0;
   w.probe      = tled->probe;
   w.beta       = p->stiffness_damping;
   w.step.alpha = p->damping;
@@ -286,6 +301,7 @@ PetscErrorCode TLEDAdvance(TLED tled, PetscReal dt, PetscInt *n_substeps)
   PetscCall(VecRestoreArray(tled->v, &w.v));
   PetscCall(VecRestoreArray(tled->u, &w.u));
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &tled->force_state));
+  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &tled->speed_state));
   tled->substeps += n;
   if (n_substeps) *n_substeps = n;
   PetscCall(PetscLogEventEnd(TLED_EVENT_ADVANCE, tled, 0, 0, 0));
