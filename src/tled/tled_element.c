@@ -37,21 +37,18 @@ const TLEDElementOps TLEDElementT10 = {"t10", 10, 0, TLEDForcesT10_OpenMP, Point
 */
 PetscErrorCode TLEDElementPick_Private(TLED tled)
 {
-  static const char *const names[]   = {"auto", "t4", "anp", "t10"};
-  const PetscBool          quadratic = (PetscBool)(tled->mesh.n_corners == 10);
-  const int                wanted    = tled->params.element;
-  PetscBool                soft      = PETSC_FALSE; /* a nearly incompressible material */
-  char                     key[2 * BY_NAME_MAX];
+  const PetscBool quadratic = (PetscBool)(tled->mesh.n_corners == 10);
+  const int       wanted    = tled->params.element;
+  PetscBool       soft      = PETSC_FALSE; /* a nearly incompressible material */
+  char            key[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(key, sizeof key, "%s.element", ((PetscObject)tled)->name));
   if (quadratic && wanted != TLED_ELEMENT_AUTO && wanted != TLED_ELEMENT_T10)
-    PetscFunctionReturn(InputError(key,
-                                   "is %s, but the mesh is of second order (10-node tetrahedra)\n"
-                                   "  expected t10 or auto, or a mesh of first order (gmsh -3 -order 1)",
-                                   names[wanted]));
+    PetscFunctionReturn(InputError(key, "does not go with the mesh, which is of second order (10-node tetrahedra)\n"
+                                        "  expected t10 or auto, or a mesh of first order (gmsh -3 -order 1)"));
   if (!quadratic && wanted == TLED_ELEMENT_T10)
-    PetscFunctionReturn(InputError(key, "is t10, but the mesh is of first order (4-node tetrahedra)\n"
+    PetscFunctionReturn(InputError(key, "does not go with the mesh, which is of first order (4-node tetrahedra)\n"
                                         "  expected a mesh of second order: gmsh body.msh -3 -order 2 -o body2.msh"));
   for (PetscInt k = 0; k < tled->n_materials; k++) soft = (PetscBool)(soft || TLEDPoisson(&tled->laws[k]) > 0.4);
   if (quadratic) tled->loops.ops = &TLEDElementT10;

@@ -3,6 +3,7 @@
 #ifndef BY_TEST_PATCH_REFERENCE_H
 #define BY_TEST_PATCH_REFERENCE_H
 
+#include "tled/tled.h"
 #include "tled/tled_material.h"
 
 #define PATCH_STATES 8
@@ -201,5 +202,20 @@ static const StretchReference stretch_reference[TLED_LAWS - 1][7] = {
     {1.05, 1.05, 434453.9062500004, 31057.050781249975},
   },
 };
+
+/* the reference's material of a law: mu and lambda or kappa are those of E 3 MPa, nu 0.3 */
+static inline void ReferenceMaterial(int law, TLEDMaterialParams *p)
+{
+  const TLEDLaw *m = ReferenceLaw(law);
+
+  p->material        = law;
+  p->young           = law == TLED_LAW_MOONEY_RIVLIN ? 0.0 : 2.0 * reference_mu * 1.3;
+  p->c10             = m->c10;
+  p->c01             = m->c01;
+  p->fibre_stiffness = m->eta;
+  p->fibre[0]        = law == TLED_LAW_TRANSVERSE ? 1.0 : 0.0;
+  p->fibre[1]        = 0.35 * p->fibre[0];
+  p->fibre[2]        = 0.2 * p->fibre[0];
+}
 
 #endif

@@ -18,26 +18,11 @@ static void Wavy(const PetscReal X[3], PetscReal u[3])
   u[2] = 0.04 * sin(4 * X[2] + X[0] * X[1]) + 0.03 * X[2];
 }
 
-/* the reference's material of a law: mu and lambda or kappa are those of E 3 MPa, nu 0.3 */
-static void Material(int law, TLEDMaterialParams *p)
-{
-  const TLEDLaw *m = ReferenceLaw(law);
-
-  p->material        = law;
-  p->young           = law == TLED_LAW_MOONEY_RIVLIN ? 0.0 : 2.0 * reference_mu * 1.3;
-  p->c10             = m->c10;
-  p->c01             = m->c01;
-  p->fibre_stiffness = m->eta;
-  p->fibre[0]        = law == TLED_LAW_TRANSVERSE ? 1.0 : 0.0;
-  p->fibre[1]        = 0.35 * p->fibre[0];
-  p->fibre[2]        = 0.2 * p->fibre[0];
-}
-
 static TLED Cube(int law, int element, TLEDParams **p)
 {
   TLED tled = NewBody("tests/meshes/cube_h1.msh", p);
 
-  Material(law, &(*p)->elastic);
+  ReferenceMaterial(law, &(*p)->elastic);
   (*p)->element  = element;
   assert_petsc(TLEDSetUp(tled));
   return tled;

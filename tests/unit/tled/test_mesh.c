@@ -176,12 +176,12 @@ static void ElementAndOrder_MustAgree(void **state)
   for (int i = 0; i < 2; i++) {
     tled       = Body(path, &p);
     p->element = elements[i];
-    REFUSED(tled, "body.element", "the mesh is of second order", "expected t10 or auto");
+    REFUSED(tled, "body.element", "which is of second order", "expected t10 or auto");
   }
   WriteCube(path, 41, 0, 0, NULL);
   tled       = Body(path, &p);
   p->element = TLED_ELEMENT_T10;
-  REFUSED(tled, "body.element", "the mesh is of first order", "gmsh body.msh -3 -order 2");
+  REFUSED(tled, "body.element", "which is of first order", "gmsh body.msh -3 -order 2");
   unlink(path);
 }
 

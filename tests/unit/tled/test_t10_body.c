@@ -22,7 +22,7 @@ static void Wavy(const PetscReal X[3], PetscReal u[3])
 }
 
 /* a unit cube of six quadratic tetrahedra */
-static TLED Cube(int material, int quadrature, double curved)
+static TLED Cube(int law, int quadrature, double curved)
 {
   const CubeFile file = {41, 0, curved, 1};
   char           path[64];
@@ -32,10 +32,9 @@ static TLED Cube(int material, int quadrature, double curved)
   snprintf(path, sizeof path, "/tmp/byssus_test_t10_%d.msh", (int)getpid());
   WriteCube2(path, &file);
   snprintf(p->mesh, sizeof p->mesh, "%s", path);
-  p->element          = TLED_ELEMENT_AUTO;
-  p->quadrature       = quadrature;
-  p->elastic.material = material;
-  p->elastic.young    = 2.0 * reference_mu * 1.3; /* mu, lambda of the reference: E 3 MPa, nu 0.3 */
+  p->element    = TLED_ELEMENT_AUTO;
+  p->quadrature = quadrature;
+  ReferenceMaterial(law, &p->elastic);
   assert_petsc(TLEDSetUp(tled));
   unlink(path);
   return tled;
@@ -46,7 +45,7 @@ static TLED Cube(int material, int quadrature, double curved)
 static void PatchTest_GivesTheUniformStress(void **state)
 {
   (void)state;
-  for (int law = 0; law < 2; law++) {
+  for (int law = 0; law < TLED_LAWS; law++) {
     for (int rule = 0; rule < 2; rule++) {
       TLED             tled = Cube(law, rule, 0.0);
       const PetscInt  *tri;
@@ -60,7 +59,7 @@ static void PatchTest_GivesTheUniformStress(void **state)
       assert_petsc(TLEDGetSize(tled, &n, NULL));
       assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
       assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &n_tri, &tri));
-      for (int i = 0; i < 5; i++) {
+      for (int i = 0; i < PATCH_STATES; i++) {
         const PatchReference *r        = &patch_reference[law][i];
         double               *expected = calloc(3 * (size_t)n, sizeof *expected);
         map                            = r->F;
@@ -132,8 +131,8 @@ static void RigidMotion_GivesNoForce(void **state)
   Q[0] = Q[8] = cos(2.1), Q[2] = sin(2.1), Q[4] = 1.0, Q[6] = -sin(2.1);
   (void)state;
   map = Q;
-  for (int k = 0; k < 8; k++) {
-    TLED      tled = Cube(k & 1, k >> 1 & 1, k & 4 ? 0.05 : 0.0);
+  for (int k = 0; k < 4 * TLED_LAWS; k++) {
+    TLED      tled = Cube(k / 4, k & 1, k & 2 ? 0.05 : 0.0);
     Vec       u, f;
     PetscReal top;
     TLEDStats stats;
@@ -158,8 +157,8 @@ static void ForceAndTangent_AreDerivatives(void **state)
   const PetscReal eps = 1e-6;
 
   (void)state;
-  for (int k = 0; k < 8; k++) {
-    TLED      tled = Cube(k & 1, k >> 1 & 1, k & 4 ? 0.05 : 0.0);
+  for (int k = 0; k < 4 * TLED_LAWS; k++) {
+    TLED      tled = Cube(k / 4, k & 1, k & 2 ? 0.05 : 0.0);
     Vec       u, u0, d, f, up, down, Kd;
     Mat       K = NULL;
     PetscReal W[2], work, size, top;
