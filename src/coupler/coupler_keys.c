@@ -8,7 +8,7 @@
 static const char *const wall_names[]   = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
 static const char *const axis_names[]   = {"x", "y", "z", NULL};
 static const char *const scheme_names[] = {"auto", "explicit", "mass", NULL};
-static const char *const kinds[]        = {"static", "dynamic", "both", NULL};
+static const char *const kinds[]        = {"static", "dynamic", "both", "none", NULL};
 static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", NULL};
 
 // clang-format off
@@ -63,7 +63,7 @@ const Key ProbeKeys[] = {
   KEY_END};
 
 const Key VerifyKeys[] = {
-  {"kind",              KEY_CHOICE, ROW(VerifyParams, kind),              "",  "static", 0, 0, 0, kinds, "what is compared: equilibrium, motion, or both"},
+  {"kind",              KEY_CHOICE, ROW(VerifyParams, kind),              "",  "static", 0, 0, 0, kinds, "what is compared: equilibrium, motion, both; none = frequencies alone"},
   {"tolerance",         KEY_REAL,   ROW(VerifyParams, tolerance),         "1", "1e-6", 0, 1, KEY_LO_OPEN, NULL, "allowed largest nodal difference of the equilibria, over the largest displacement"},
   {"relax_tolerance",   KEY_REAL,   ROW(VerifyParams, relax_tolerance),   "1", "1e-9", 0, 1, KEY_LO_OPEN, NULL, "relative residual at which the explicit solid counts as at rest"},
   {"relax_steps",       KEY_INT,    ROW(VerifyParams, relax_steps),       "1", "1000000", 1, 2e9, 0, NULL, "steps that its relaxation may take"},
@@ -74,6 +74,9 @@ const Key VerifyKeys[] = {
   {"samples",           KEY_INT,    ROW(VerifyParams, samples),           "1", "20",   1, 1e5, 0, NULL, "times at which dynamic runs are compared"},
   {"dynamic_tolerance", KEY_REAL,   ROW(VerifyParams, dynamic_tolerance), "1", "1e-3", 0, 1e3, KEY_LO_OPEN, NULL, "allowed largest nodal difference of the finest explicit run, over the largest displacement"},
   {"order",             KEY_REAL,   ROW(VerifyParams, order),             "1", "1.8",  0, 4, 0, NULL, "least order between the two finest steps; 0 = not judged"},
+  {"modes",             KEY_INT,    ROW(VerifyParams, modes),             "1", "0",    0, BY_REALS_MAX, 0, NULL, "lowest natural frequencies compared with the ringing explicit solid, without gravity; 0 = none"},
+  {"modes_tolerance",   KEY_REAL,   ROW(VerifyParams, modes_tolerance),   "1", "1e-3", 0, 1, KEY_LO_OPEN, NULL, "allowed relative difference of a frequency"},
+  {"periods",           KEY_REAL,   ROW(VerifyParams, periods),           "1", "10",   2, 1e4, 0, NULL, "of the lowest mode that the explicit solid rings"},
   {"picture",           KEY_BOOL,   ROW(VerifyParams, picture),           "",  "true", 0, 0, 0, NULL, "draw the result"},
   {"directory",         KEY_STRING, ROW(VerifyParams, directory),         "",  "",     0, 0, 0, NULL, "directory of the results; none = that of the run, with _verify behind it"},
   KEY_END};

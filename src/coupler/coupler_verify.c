@@ -61,14 +61,14 @@ PetscErrorCode VerifyBreakdown(Verify *verify, int side, const char when[])
 PetscErrorCode VerifySeriesCreate(Verify *verify, const char name[], Series *series)
 {
   char             file[3 * BY_NAME_MAX];
-  PetscInt         n_tets;
+  PetscInt         n_tets, n_corners;
   const PetscInt  *tets;
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(file, sizeof(file), "%s_%s", VerifyName(verify), name));
   PetscCall(TLEDGetSize(VerifyBody(verify, EXPLICIT), NULL, &n_tets));
-  PetscCall(TLEDGetMesh(VerifyBody(verify, EXPLICIT), NULL, &tets, NULL));
-  ByCall(SeriesCreate(verify->params.directory, file, SERIES_TETRAHEDRA, verify->scene, PETSC_FALSE, 0.0, series));
+  PetscCall(TLEDGetMesh(VerifyBody(verify, EXPLICIT), &n_corners, &tets, NULL));
+  ByCall(SeriesCreate(verify->params.directory, file, n_corners == 4 ? SERIES_TETRAHEDRA : SERIES_TETRAHEDRA_QUADRATIC, verify->scene, PETSC_FALSE, 0.0, series));
   PetscCall(SeriesSetDoublePrecision(*series, PETSC_TRUE));
   ByCall(SeriesSetCells(*series, n_tets, tets));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -113,25 +113,24 @@ static PetscErrorCode ReadParams(VerifyParams *params)
     if (params->steps.value[k] >= params->steps.value[k - 1])
       PetscFunctionReturn(InputError("verify.steps", "must fall: the order is that between a step and the next smaller one"));
   }
+  if (params->kind == VERIFY_NONE && !params->modes)
+    PetscFunctionReturn(InputError("verify.kind", "compares nothing, and verify.modes is 0\nask for one of them"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* what the body is: a line on the screen, entries of the summary */
 static PetscErrorCode Describe(Verify *v)
 {
-  static const char *const elements[] = {"auto", "t4", "anp", "t10"};
   TLED        tled = VerifyBody(v, EXPLICIT);
-  TLEDParams *params;
   PetscInt    n_nodes, n_tets, n_corners;
   PetscReal   critical;
   const char *element;
 
   PetscFunctionBegin;
-  PetscCall(TLEDGetParams(tled, &params));
   PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));
   PetscCall(TLEDGetMesh(tled, &n_corners, NULL, NULL));
   ByCall(TLEDGetCriticalStep(tled, &critical));
-  element = elements[params->element];
+  PetscCall(TLEDGetElementName(tled, &element));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %" PetscInt_FMT " nodes, %" PetscInt_FMT " %s elements; critical step %.6g s\n", VerifyName(v), n_nodes,
                         n_tets, element, (double)critical));
   PetscCall(JsonInt(v->json, "nodes", n_nodes));
@@ -151,6 +150,8 @@ static PetscErrorCode CompareBody(Verify *v)
   PetscCall(JsonBegin(v->json, VerifyName(v)));
   ByCall(Describe(v));
   ierr = PETSC_SUCCESS;
+  /* modes first: about the body as it was built */
+  if (v->params.modes) ierr = VerifyModes(v);
   if (!ierr && (kind == VERIFY_DYNAMIC || kind == VERIFY_BOTH)) ierr = VerifyDynamic(v);
   if (!ierr && (kind == VERIFY_STATIC || kind == VERIFY_BOTH)) ierr = VerifyStatic(v);
   if (ierr != BY_ERR_BREAKDOWN) ByCall(ierr);

@@ -107,6 +107,8 @@ BY_EXTERN PetscErrorCode TLEDGetMesh(TLED tled, PetscInt *n_corners, const Petsc
 BY_EXTERN PetscErrorCode TLEDGetSurface(TLED tled, PetscBool wetted_only, PetscInt *n_triangles, const PetscInt *triangles[]);
 /* nodes of a physical group; unknown group: n = 0 */
 BY_EXTERN PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n, const PetscInt *nodes[]);
+/* name of the element that `auto` stands for in this body: t4, anp, t10; after SetUp */
+BY_EXTERN PetscErrorCode TLEDGetElementName(TLED tled, const char *name[]);
 BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
 /* mass that mass scaling added: [kg], and per cent of the mass before; either may be NULL */
 BY_EXTERN PetscErrorCode TLEDGetAddedMass(TLED tled, PetscReal *mass, PetscReal *percent);

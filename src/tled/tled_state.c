@@ -43,6 +43,14 @@ PetscErrorCode TLEDGetGroup(TLED tled, const char name[], PetscInt *n, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@ TLEDGetElementName - t4, anp or t10: what the body's elements are, also where the parameters say auto; borrowed @*/
+PetscErrorCode TLEDGetElementName(TLED tled, const char *name[])
+{
+  PetscFunctionBegin;
+  *name = tled->loops.ops->name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@ TLEDGetMass - lumped nodal masses [kg], n_nodes, borrowed @*/
 PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[])
 {
