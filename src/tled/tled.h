@@ -82,7 +82,7 @@ typedef struct {
 BY_EXTERN const Key TLEDKeys[], TLEDMaterialKeys[], TLEDConstraintKeys[], TLEDLoadKeys[];
 
 /* life: Create -> GetParams/SetFromOptions (options prefix "<body>_") -> SetGravity -> SetUp -> Advance -> Destroy.
-   SetUp reads the mesh through DMPlex; user errors (missing mesh, no such group, not tetrahedra, inverted element) are
+   SetUp reads the mesh; user errors (missing mesh, no such group, not tetrahedra, inverted element) are
    printed as design.md says, and BY_ERR_INPUT is returned. */
 BY_EXTERN PetscErrorCode TLEDCreate(MPI_Comm comm, const char name[], TLED *tled);
 BY_EXTERN PetscErrorCode TLEDGetParams(TLED tled, TLEDParams **params);

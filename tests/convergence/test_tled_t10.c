@@ -5,55 +5,18 @@
    x = 0, dead traction 6.25 MPa in y on x = 48 mm, mu 80.194 MPa, nu 0.499, sides free. The loads are integrated with the shape
    functions, as that code does. */
 #include "tled/tled_implicit.h"
-#include "tled/tled_t10.h"
 #include "unit/tled/body.h"
 
-/* nodal forces of a body force [N/m^3] in -z, the integral of each shape function times it */
-static void BodyForce(TLED tled, double force)
+/* a constant load on a group, before SetUp */
+static void AddLoad(TLED tled, const char group[], double body_force_z, double traction_y)
 {
-  const PetscInt  *tets;
-  const PetscReal *X;
-  PetscReal       *f;
-  PetscInt         n_tets;
-  Vec              F;
+  TLEDLoadParams load;
 
-  assert_petsc(TLEDGetSize(tled, NULL, &n_tets));
-  assert_petsc(TLEDGetMesh(tled, NULL, &tets, &X));
-  assert_petsc(TLEDGetVectors(tled, NULL, NULL, &F));
-  assert_petsc(VecGetArray(F, &f));
-  for (PetscInt e = 0; e < n_tets; e++) {
-    double x[30], L[4], N[10], Jinv[9];
-    for (int k = 0; k < 30; k++) x[k] = X[3 * tets[10 * e + k / 3] + k % 3];
-    for (int q = 0; q < TLED_T10_POINTS_FINE; q++) {
-      const double weight = TLEDQuadratureT10(TLED_T10_POINTS_FINE, q, L), w = weight * TLEDJacobianT10(L, x, Jinv);
-      TLEDShapeT10(L, N);
-      for (int a = 0; a < 10; a++) f[3 * tets[10 * e + a] + 2] -= force * w * N[a];
-    }
-  }
-  assert_petsc(VecRestoreArray(F, &f));
-}
-
-/* nodal forces of a traction [Pa] in y on the wetted faces: a third of t A to each edge's node of a face, nothing to its vertices */
-static void Traction(TLED tled, double traction)
-{
-  const PetscInt  *tri;
-  const PetscReal *X;
-  PetscReal       *f;
-  PetscInt         n;
-  Vec              F;
-
-  assert_petsc(TLEDGetSurface(tled, PETSC_TRUE, &n, &tri));
-  assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
-  assert_petsc(TLEDGetVectors(tled, NULL, NULL, &F));
-  assert_petsc(VecGetArray(F, &f));
-  for (PetscInt t = 3; t < n; t += 4) { /* the fourth of a face's triangles has the edges' nodes, and a quarter of its area */
-    double a[3], b[3], c[3];
-    Sub3(&X[3 * tri[3 * t + 1]], &X[3 * tri[3 * t]], a);
-    Sub3(&X[3 * tri[3 * t + 2]], &X[3 * tri[3 * t]], b);
-    Cross3(a, b, c);
-    for (int k = 0; k < 3; k++) f[3 * tri[3 * t + k] + 1] += traction * 2.0 * Norm3(c) / 3.0;
-  }
-  assert_petsc(VecRestoreArray(F, &f));
+  assert_petsc(KeysSetDefaults(TLEDLoadKeys, &load));
+  AddName(&load.groups, group);
+  load.body_force[2] = body_force_z;
+  load.traction[1]   = traction_y;
+  assert_petsc(TLEDAddLoad(tled, "load", &load));
 }
 
 static void Solve(TLED tled, double u[3], double x, double y, double z, double *energy)
@@ -106,8 +69,8 @@ static void Beam_BendsAsTheIndependentCodeSays(void **state)
     p->quadrature       = i % 2 ? TLED_QUADRATURE_14 : TLED_QUADRATURE_4;
     p->elastic.material = beam[k].material;
     p->elastic.poisson  = beam[k].poisson;
+    AddLoad(tled, "solid", -9810.0, 0.0);
     assert_petsc(TLEDSetUp(tled));
-    BodyForce(tled, 9810.0);
     Solve(tled, u, 1.0, 0.05, 0.05, &energy);
     printf("%-19s  %.2f  %-6d  %-17.10f  %-8.1e  %-17.10f  %-8.1e\n", beam[k].material ? "st_venant_kirchhoff" : "neo_hookean",
            beam[k].poisson, i % 2 ? 14 : 4, u[2], fabs(u[2] / beam[k].tip[2] - 1), energy, fabs(energy / beam[k].energy - 1));
@@ -159,13 +122,12 @@ static void Cook_BendsAsTheIndependentCodeSays(void **state)
     double      u[3], energy;
 
     AddName(&p->fixed, "clamp");
-    AddName(&p->wetted, "load");
     p->element         = TLED_ELEMENT_AUTO;
     p->quadrature      = i ? TLED_QUADRATURE_14 : TLED_QUADRATURE_4;
     p->elastic.poisson = 0.499;
     p->elastic.young   = 2 * 80.194e6 * 1.499;
+    AddLoad(tled, "load", 0.0, 6.25e6);
     assert_petsc(TLEDSetUp(tled));
-    Traction(tled, 6.25e6);
     Solve(tled, u, 0.048, 0.06, 0.0, &energy);
     printf("cook, nu 0.499, %d points: uy of the top corner %.9f mm, error %.1e (%.1f %% of the converged 8.3259), energy %.8f J, error %.1e\n",
            i ? 14 : 4, 1e3 * u[1], fabs(u[1] / corner[1] - 1), 100 * (u[1] / 0.008325899217964183 - 1), energy, fabs(energy / W - 1));
