@@ -191,6 +191,7 @@ PetscErrorCode TLEDSetUp(TLED tled)
   ByCall(TLEDElementPick_Private(tled));
   PetscCall(TLEDBlocksCreate_Private(&tled->mesh, tled->mesh.n_corners == 4 ? 1 : n_points[tled->params.quadrature], &tled->blocks));
   PetscCall(TLEDFibresSetUp_Private(tled));
+  PetscCall(TLEDViscousSetUp_Private(tled));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(TLEDConstraintsSetUp_Private(tled));
   ByCall(PickWetted(tled));
@@ -259,6 +260,7 @@ PetscErrorCode TLEDDestroy(TLED *tled)
   if (--((PetscObject)t)->refct > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDMeshDestroy_Private(&t->mesh));
   PetscCall(TLEDBlocksDestroy_Private(&t->blocks));
+  PetscCall(TLEDViscousDestroy_Private(t));
   PetscCall(PetscFree2(t->loops.partial, t->loops.status));
   PetscCall(PetscFree3(t->loops.nodal, t->loops.pressure, t->loops.weight));
   PetscCall(PetscFree(t->wetted));

@@ -28,6 +28,7 @@ typedef struct {
   PetscReal c10, c01;                      /* of Mooney and Rivlin [Pa], in place of young                               */
   PetscReal fibre_stiffness;               /* eta [Pa] of a transversely isotropic material                              */
   PetscReal fibre[3];                      /* direction of its fibres, of any length                                     */
+  Reals     prony_alpha, prony_tau;        /* part of the isochoric stress that relaxes [1], in which time [s]           */
 } TLEDMaterialParams;
 
 /* Parameters of a body's section `<body>:`; TLEDKeys[] (tled_keys.c) declares each. */

@@ -170,13 +170,13 @@ static void AddAverage(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
   for (int k = 0; k < 9; k++) {
     double dF[9] = {0.0};
     dF[k]    = 1.0;
-    dpbar[k] = TLEDAverageDifferential(at_u.law, at_u.fibre, H, 1.0 + jbar, dF, 0.0, dP);
+    dpbar[k] = TLEDAverageDifferential(&at_u.law, H, 1.0 + jbar, dF, 0.0, dP);
     TLEDCofactorDifferential(F, dF, dC);
     for (int i = 0; i < 9; i++) A[9 * i + k] = dP[i] + p * dC[i];
   }
   ContractTangent(A, G4, V0, K);
   AddElement(s, 4, slot, K);
-  const double zero[9] = {0.0}, d2 = TLEDAverageDifferential(at_u.law, at_u.fibre, H, 1.0 + jbar, zero, 1.0, dP);
+  const double zero[9] = {0.0}, d2 = TLEDAverageDifferential(&at_u.law, H, 1.0 + jbar, zero, 1.0, dP);
   for (int a = 0; a < 4; a++) {
     for (int b = 0; b < 4; b++) {
       const PetscInt at = slot[4 * a + b];
@@ -200,8 +200,8 @@ static void AddPlain(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
 
   for (int point = 0; point < b->n_points; point++) {
     TLEDPointAt_Private(&tled->loops, tled->mesh.tets, l, point, u, &p);
-    TLEDElementStiffness(p.law, p.fibre, p.seen, p.G, nc, p.V0, K);
-    if (tled->loops.anp) TLEDElementSoften(p.law, p.seen, p.G, nc, p.V0, K);
+    TLEDElementStiffness(&p.law, p.seen, p.G, nc, p.V0, K);
+    if (tled->loops.anp) TLEDElementSoften(p.law.law, p.seen, p.G, nc, p.V0, K);
   }
   AddElement(s, nc, &s->slot[nc * nc * b->element[l]], K);
 }

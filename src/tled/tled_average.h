@@ -21,7 +21,7 @@ BY_HD void TLEDCofactorDifferential(const double F[9], const double dF[9], doubl
 
 /* The element's energy density is a function w(F, Jbar) = W((Jbar/J)^(1/3) F). Differentials in the direction (dF, dJbar) of its
    derivatives: of dw/dF = r Pbar - (Jbar/J) pbar cof F (written over dP) and of dw/dJbar = pbar (returned). */
-BY_HD double TLEDAverageDifferential(const TLEDLaw *law, const double fibre[3], const double H[9], double Jbar, const double dF[9],
+BY_HD double TLEDAverageDifferential(const TLEDLocalLaw *law, const double H[9], double Jbar, const double dF[9],
                                      double dJbar, double dP[9])
 {
   const double inv_J = 1.0 / (1.0 + TLEDJacobianMinusOne(H));
@@ -34,8 +34,8 @@ BY_HD double TLEDAverageDifferential(const TLEDLaw *law, const double fibre[3], 
   for (int k = 0; k < 9; k++) dJ += C[k]*dF[k];
   const double dr = r/3.0*(dJbar/Jbar - dJ*inv_J);
   for (int k = 0; k < 9; k++) dFbar[k] = r*dF[k] + dr*F[k];
-  TLEDStress(law, fibre, Hbar, TLEDLogJacobian(Jbar - 1.0), 1.0/Jbar, Pbar);
-  TLEDStressDifferential(law, fibre, Hbar, dFbar, dPbar);
+  TLEDLocalStress(law, Hbar, Pbar);
+  TLEDLocalDifferential(law, Hbar, dFbar, dPbar);
   const double pbar = TLEDAveragePressure(Hbar, Pbar, Jbar);
   for (int k = 0; k < 9; k++) work += dPbar[k]*r*F[k] + Pbar[k]*dFbar[k];
   const double dpbar = (work/3.0 - pbar*dJbar)/Jbar;

@@ -69,7 +69,7 @@ static PetscInt MostStrained(TLED tled, const PetscReal u[])
     TLEDPoint p;
     if (b->element[k / b->n_points] < 0) continue;
     TLEDPointAt_Private(&tled->loops, tled->mesh.tets, k / b->n_points, k % b->n_points, u, &p);
-    const double W = TLEDEnergy(p.law, p.fibre, p.seen);
+    const double W = TLEDEnergy(p.law.law, p.law.fibre, p.seen);
     if (W > top) top = W, most = b->element[k / b->n_points];
   }
   return most;

@@ -66,6 +66,7 @@ PetscErrorCode TLEDDeviceCreate(TLED tled, TLEDDevice *device)
   PetscFunctionBegin;
   PetscCheck(tled->set_up && tled->loops.ops == &TLEDElementT4, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "the device has the forces of the element t4 of a body that is set up");
+  PetscCheck(!tled->loops.viscous, PETSC_COMM_SELF, PETSC_ERR_SUP, "the device has no materials with a Prony series");
   PetscCall(PetscNew(&d));
   d->n_lanes = TLED_LANES * b->n_packs;
   d->n_nodes = b->n_nodes;

@@ -75,17 +75,16 @@ PetscErrorCode TLEDElementPick_Private(TLED tled)
 void TLEDPointAt_Private(const TLEDLoops *w, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p)
 {
   const TLEDBlocks *b      = w->blocks;
-  const int         n      = w->ops->n_corners, pack = lane / TLED_LANES;
+  const int         n      = w->ops->n_corners;
   const PetscInt   *corner = &tets[n * b->element[lane]];
 
-  p->law = &w->laws[b->material[pack]];
+  TLEDLocalLawAt_Private(w, lane, point, &p->law);
   w->ops->point(b, lane, point, p->G, &p->V0);
   for (int k = 0; k < 9; k++) p->H[k] = 0.0;
   for (int a = 1; a < n && u; a++) /* differences keep the digits of small strains in a body that has moved far */
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) p->H[3 * i + j] += (u[3 * corner[a] + i] - u[3 * corner[0] + i]) * p->G[3 * a + j];
   p->jm1 = TLEDJacobianMinusOne(p->H);
-  for (int k = 0; k < 3; k++) p->fibre[k] = b->fibre ? b->fibre[(3 * pack + k) * TLED_LANES + lane % TLED_LANES] : 0.0;
   for (int k = 0; k < 9; k++) p->seen[k] = p->H[k];
   if (w->ops->averaged && u) {
     double jbar = 0.0;

@@ -6,7 +6,7 @@
 #ifndef BY_TLED_ELEMENT_H
 #define BY_TLED_ELEMENT_H
 
-#include "tled/tled_material.h"
+#include "tled/tled_prony.h"
 
 /* Gradients and volume of a tetrahedron with corners X (4 x 3): rows of the inverse of D = [X1-X0 X2-X0 X3-X0], V0 = det D/6 (returned,
    negative when the corners are ordered the wrong way; G is not written when it is 0). */
@@ -79,14 +79,13 @@ BY_HD void TLEDAverageStress(const double H[9], double r, double inv_J, double J
 
 /* Stiffness of one integration point of an element with n nodes, added to K (3n x 3n, row-major, rows 3 a + i) [N/m]:
      K_ai,bk += V0 sum_jl G_a,j A_ijkl G_b,l,  A = dP/dF at the gradient H that the law sees, G the nodes' reference gradients (n x 3) */
-BY_HD void TLEDElementStiffness(const TLEDLaw *law, const double fibre[3], const double H[9], const double G[], int n, double V0,
-                                double K[])
+BY_HD void TLEDElementStiffness(const TLEDLocalLaw *law, const double H[9], const double G[], int n, double V0, double K[])
 {
   for (int k = 0; k < 3; k++) {
     for (int l = 0; l < 3; l++) {
       double dF[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, dP[9];
       dF[3*k + l] = V0;
-      TLEDStressDifferential(law, fibre, H, dF, dP);
+      TLEDLocalDifferential(law, H, dF, dP);
       for (int a = 0; a < n; a++) {
         for (int i = 0; i < 3; i++) {
           const double t = Dot3(&dP[3*i], &G[3*a]);

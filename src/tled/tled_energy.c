@@ -35,7 +35,7 @@ PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *ene
       const double J = 1.0 + p.jm1;
       for (int i = 0; i < 9; i++) F2 += p.H[i] * p.H[i];
       F2 += 2.0 * (p.H[0] + p.H[4] + p.H[8]);
-      if (energy) q[0] += p.V0 * TLEDEnergy(p.law, p.fibre, p.seen);
+      if (energy) q[0] += p.V0 * TLEDLocalEnergy_Private(w, l, k % b->n_points, &p.law, p.seen);
       q[1] += p.V0 * J;
       q[2] = J < q[2] ? J : q[2];
       q[3] = F2 > q[3] ? F2 : q[3];

@@ -84,6 +84,9 @@ typedef struct {
 
 typedef struct _TLEDElementOps TLEDElementOps;
 
+/* what forces, energies and stiffnesses mean in materials with a Prony series, see TLEDSetViscous_Private() */
+typedef enum { TLED_VISCOUS_INSTANT, TLED_VISCOUS_STEP, TLED_VISCOUS_COMMIT } TLEDViscousMode;
+
 /* What the element loops need; raw pointers only, so that they run inside a parallel region. */
 typedef struct {
   const TLEDBlocks     *blocks;
@@ -91,6 +94,11 @@ typedef struct {
   const TLEDLaw        *laws;    /* of each material; the first is the body's own                  */
   int               n_laws;
   int               anp;         /* 1 = average nodal pressure: ops->averaged                      */
+  int               viscous;        /* 1: some material has a Prony series; all below are NULL without */
+  int               viscous_mode;   /* TLEDViscousMode                                              */
+  TLEDPronyStep    *prony;          /* n_laws: of the step of the mode                              */
+  double           *history;        /* what has been, of all packs with such a material [Pa]        */
+  size_t           *history_offset; /* n_packs                                                      */
   double           *partial;     /* n_slots x 3: forces of a block on its nodes [N]                */
   double           *nodal;       /* n_nodes: J_a - 1, then q_a [Pa] (anp)                          */
   double           *pressure;    /* n_nodes (anp)                                                  */
@@ -111,14 +119,14 @@ struct _TLEDElementOps {
 
 /* One integration point of an element in the deformed body, for loops that are not part of a step. */
 typedef struct {
-  const TLEDLaw *law;
+  TLEDLocalLaw   law;
   double         G[30];   /* dN_a/dX [1/m], n_corners x 3                        */
   double         V0;      /* [m^3]                                               */
   double         H[9];    /* displacement gradient                               */
   double         jm1;     /* det F - 1                                           */
   double         seen[9]; /* what the law sees: H, or Hbar of the averaged one   */
-  double         fibre[3];
 } TLEDPoint;
+
 /* A support of the scene. */
 typedef struct {
   char                 key[2 * BY_NAME_MAX + 2]; /* section, "block.plate"; key, "block.fixed", for a shorthand */
@@ -202,6 +210,8 @@ struct _p_TLED {
   TLEDMaterialParams materials[TLED_MATERIALS]; /* the first is params.elastic, from SetUp on  */
   char         material_name[TLED_MATERIALS][BY_NAME_MAX];
   TLEDLaw      laws[TLED_MATERIALS];
+  PetscInt     n_history;      /* numbers in loops.history                                    */
+  PetscReal   *saved_history;
   Vec          u, v, f;
   PetscReal   *x;              /* X + u, n_nodes x 3, of TLEDGetPositions()                   */
   PetscReal   *force;          /* f_int of the last substep, n_nodes x 3 [N]                  */
@@ -235,6 +245,15 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
 /* tled_materials.c: laws of the materials, and mesh->material */
 PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled);
 PetscErrorCode TLEDFibresSetUp_Private(TLED tled); /* blocks.fibre */
+/* tled_viscous.c: materials with a Prony series */
+PetscErrorCode TLEDViscousSetUp_Private(TLED tled);
+PetscErrorCode TLEDViscousDestroy_Private(TLED tled);
+void           TLEDSetViscous_Private(TLED tled, TLEDViscousMode mode, PetscReal dt);
+PetscErrorCode TLEDCommitViscous_Private(TLED tled, const PetscReal u[], PetscReal dt);
+void           TLEDLocalLawAt_Private(const TLEDLoops *loops, int lane, int point, TLEDLocalLaw *law);
+double         TLEDLocalEnergy_Private(const TLEDLoops *loops, int lane, int point, const TLEDLocalLaw *law, const double H[9]);
+void           TLEDViscousStress_OpenMP(const TLEDLoops *loops, int pack, int point, int commit, double H[9][TLED_LANES],
+                                        double P[9][TLED_LANES]);
 /* tled_element.c */
 extern const TLEDElementOps TLEDElementT4, TLEDElementANP, TLEDElementT10;
 PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */

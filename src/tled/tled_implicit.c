@@ -131,10 +131,12 @@ static void ProjectNode(const PetscReal P[9], const PetscReal x[3], PetscReal y[
   for (PetscInt i = 0; i < 3; i++) y[i] = P[3 * i] * x[0] + P[3 * i + 1] * x[1] + P[3 * i + 2] * x[2];
 }
 
-/* internal forces at y; BY_ERR_BREAKDOWN, not reported, when an element is inverted */
+/* internal forces at y, of a step of the problem's time over which stresses relax; BY_ERR_BREAKDOWN, not reported, when an element is
+   inverted */
 PetscErrorCode TLEDImplicitForces_Private(TLEDImplicit im, const PetscReal y[], PetscReal f[])
 {
   PetscFunctionBegin;
+  TLEDSetViscous_Private(im->tled, TLED_VISCOUS_STEP, im->problem.history);
   ByCall(TLEDForces_Private(im->tled, y, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -506,6 +508,7 @@ PetscErrorCode TLEDImplicitFinish_Private(TLEDImplicit im, const PetscReal u[], 
   const TLED     tled = im->tled;
   const PetscInt n    = 3 * tled->mesh.n_nodes;
   PetscReal     *to;
+  PetscErrorCode ierr = PETSC_SUCCESS;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(tled->u, &to));
@@ -515,6 +518,9 @@ PetscErrorCode TLEDImplicitFinish_Private(TLEDImplicit im, const PetscReal u[], 
   if (v) PetscCall(PetscArraycpy(to, v, n));
   else PetscCall(PetscArrayzero(to, n));
   PetscCall(VecRestoreArrayWrite(tled->v, &to));
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
+  if (!v) ierr = TLEDCommitViscous_Private(tled, u, PETSC_MAX_REAL); /* a state that broke was reported before */
+  if (ierr != BY_ERR_BREAKDOWN) PetscCall(ierr);
   tled->state.time     = time;
   tled->state.critical = 0.0; /* the body may have deformed much */
   tled->state.is_static = v ? 0.0 : 1.0;

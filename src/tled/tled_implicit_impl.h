@@ -15,7 +15,7 @@ typedef struct {
   PetscReal share;      /* of the new displacement in that at which forces are taken, 1 - alpha_f  */
   PetscReal inertia;    /* mass terms with x [1/s^2]                                               */
   PetscReal viscous;    /* stiffness damping: forces at y + viscous (x - u0) + rate  [1]           */
-  PetscReal history;    /* time over which relaxing stresses relax [s]; 0 = long-term stresses     */
+  PetscReal history;    /* time over which relaxing stresses relax [s]; PETSC_MAX_REAL: all of it  */
   PetscReal *constant;  /* n_nodes x 3 [N]                                                         */
   PetscReal *held_at;   /* n_nodes x 3: displacement of the constrained directions, else 0 [m]     */
   PetscReal *u0;        /* n_nodes x 3: displacement at the start of the step [m]                  */

@@ -82,7 +82,7 @@ void TLEDStiffnessAt_Private(TLED tled, int lane, const PetscReal u[], double K[
   for (int point = 0; point < w->blocks->n_points; point++) {
     TLEDPoint p;
     TLEDPointAt_Private(w, tled->mesh.tets, lane, point, u, &p);
-    TLEDElementStiffness(p.law, p.fibre, p.seen, p.G, n, p.V0, K);
+    TLEDElementStiffness(&p.law, p.seen, p.G, n, p.V0, K);
   }
 }
 

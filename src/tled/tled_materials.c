@@ -56,6 +56,35 @@ static PetscErrorCode Need(TLED tled, PetscInt k, const char word[], PetscBool g
   PetscFunctionReturn(InputError(key, "is missing\n  expected %s", what));
 }
 
+/* the Prony series: as many times as parts, and something left when all of them have relaxed */
+static PetscErrorCode CheckProny(TLED tled, PetscInt k)
+{
+  const Reals *alpha = &tled->materials[k].prony_alpha, *tau = &tled->materials[k].prony_tau;
+  PetscReal    sum = 0.0;
+  char         key[3 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(MaterialKey(tled, k, "prony_tau", key, sizeof key));
+  if (alpha->n != tau->n)
+    PetscFunctionReturn(InputError(key,
+                                   "has %" PetscInt_FMT " numbers, prony_alpha has %" PetscInt_FMT
+                                   "\n  expected a relaxation time for each part that relaxes",
+                                   tau->n, alpha->n));
+  if (alpha->n > TLED_PRONY_MAX)
+    PetscFunctionReturn(InputError(key, "has %" PetscInt_FMT " numbers\n  expected at most %d", tau->n, TLED_PRONY_MAX));
+  PetscCall(MaterialKey(tled, k, "prony_alpha", key, sizeof key));
+  for (PetscInt i = 0; i < alpha->n; i++) {
+    sum += alpha->value[i];
+    if (!(alpha->value[i] > 0.0 && tau->value[i] > 0.0))
+      PetscFunctionReturn(InputError(key, "and prony_tau have %g and %g s\n  expected finite numbers > 0", (double)alpha->value[i],
+                                     (double)tau->value[i]));
+  }
+  if (!(sum < 1.0))
+    PetscFunctionReturn(InputError(key, "adds up to %g\n  expected a sum < 1: the part that is left is the stiffness after a long time",
+                                   (double)sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* what the law of material k needs is given, and nothing else */
 static PetscErrorCode CheckParams(TLED tled, PetscInt k)
 {
@@ -95,7 +124,9 @@ static void MakeLaw(const TLEDMaterialParams *p, TLEDLaw *law)
   if (law->law == TLED_LAW_MOONEY_RIVLIN) law->c10 = p->c10, law->c01 = p->c01, law->mu = 2.0 * (p->c10 + p->c01);
   if (law->law < TLED_LAW_NEO_HOOKEAN_ISO) law->lambda = 2.0 * law->mu * p->poisson / (1.0 - 2.0 * p->poisson);
   else law->kappa = p->bulk > 0.0 ? p->bulk : 2.0 * law->mu * (1.0 + p->poisson) / (3.0 * (1.0 - 2.0 * p->poisson));
-  law->eta = p->fibre_stiffness;
+  law->eta     = p->fibre_stiffness;
+  law->n_prony = (int)p->prony_alpha.n;
+  for (int i = 0; i < law->n_prony; i++) law->alpha[i] = p->prony_alpha.value[i], law->tau[i] = p->prony_tau.value[i];
 }
 
 /* the elements of the volumes that material k names */
@@ -138,6 +169,7 @@ PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled)
   PetscCall(PetscCalloc1(tled->mesh.n_tets, &tled->mesh.material));
   for (PetscInt k = 0; k < tled->n_materials; k++) {
     ByCall(CheckParams(tled, k));
+    ByCall(CheckProny(tled, k));
     MakeLaw(&tled->materials[k], &tled->laws[k]);
     if (k) ByCall(AssignVolumes(tled, k));
   }

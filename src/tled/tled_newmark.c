@@ -41,6 +41,8 @@ static PetscErrorCode KnowAcceleration(TLEDImplicit im, const PetscReal u[], con
   if (im->stepped && now_u == im->state_u && now_v == im->state_v && time == im->state_time) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDExternalForces_Private(im->tled, time, u, im->f_ext));
   for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) im->y[k] = u[k] + beta * v[k];
+  ByCall(TLEDCommitViscous_Private(tled, im->y, 0.0)); /* what was done to u from outside was a jump */
+  im->problem.history = 0.0;
   ByCall(TLEDImplicitForces_Private(im, im->y, im->f_int));
   for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++)
     im->a[k] = (im->f_ext[k] - im->f_int[k]) / tled->mass[k / 3] - tled->params.damping * v[k];
@@ -112,6 +114,8 @@ static PetscErrorCode Step(TLEDImplicit im, const Scheme *s, PetscReal t, PetscR
   }
   if (converged) {
     PetscCall(Update(im, s, t + dt, dt, x, u, v, a));
+    for (PetscInt k = 0; k < n; k++) im->y[k] = u[k] + im->tled->params.stiffness_damping * v[k];
+    ByCall(TLEDCommitViscous_Private(im->tled, im->y, dt));
     im->state_time = t + dt;
     im->stats.load_steps++;
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -126,6 +126,19 @@ INLINE void PackForcesLaw(const TLEDLaw *m, Pack *p, const double fibre[], const
   }
 }
 
+/* the same of a pack whose material has a Prony series */
+static void PackViscousForces(const TLEDLoops *w, int pack, Pack *p, const double G[], const double V0[], double f[12][L])
+{
+  double P_of[9][L] __attribute__((aligned(64)));
+
+  TLEDViscousStress_OpenMP(w, pack, 0, 1, p->H, P_of);
+#pragma GCC ivdep
+  for (int l = 0; l < L; l++) {
+    const double P[9] = {P_of[0][l], P_of[1][l], P_of[2][l], P_of[3][l], P_of[4][l], P_of[5][l], P_of[6][l], P_of[7][l], P_of[8][l]};
+    StoreForces(P, G, V0, l, f);
+  }
+}
+
 /* add the forces of a pack to the block's nodes, corner after corner and lane after lane */
 INLINE void AddForces(const int local[], double f[12][L], Scratch *s)
 {
@@ -155,7 +168,8 @@ void TLEDForcesT4_OpenMP(const TLEDLoops *w, const double u[])
       const double *G = b->G + 9 * L * pack, *V0 = b->V0 + L * pack, *fibre = b->fibre ? b->fibre + 3 * L * pack : NULL;
       const TLEDLaw *m = &w->laws[b->material[pack]];
       broken += PackGradients(local, G, &s, &p);
-      PackForcesLaw(m, &p, fibre, G, V0, f);
+      if (m->n_prony) PackViscousForces(w, pack, &p, G, V0, f);
+      else PackForcesLaw(m, &p, fibre, G, V0, f);
       AddForces(local, f, &s);
     }
     StoreBlock(b, block, &s, w->partial);
@@ -291,6 +305,31 @@ INLINE void AveragePressureLaw(const TLEDLaw *m, const Pack *p, const double jba
   }
 }
 
+/* Pressures (V0 pbar) or forces of a pack whose material has a Prony series; the histories go on with the forces. */
+static void AverageViscous(int forces, const TLEDLoops *w, int pack, const Pack *p, const double jbar[], const double nodal[],
+                           const double G[], const double V0[], double pbar[], double f[12][L])
+{
+  double Hbar_of[9][L] __attribute__((aligned(64))), P_of[9][L] __attribute__((aligned(64))), r_of[L];
+
+  for (int l = 0; l < L; l++) {
+    double H[9], Hbar[9];
+    LaneGradient(p, l, H);
+    r_of[l] = TLEDAverageGradient(H, 1.0 / (1.0 + p->jm1[l]), 1.0 + jbar[l], Hbar);
+    for (int k = 0; k < 9; k++) Hbar_of[k][l] = Hbar[k];
+  }
+  TLEDViscousStress_OpenMP(w, pack, 0, forces, Hbar_of, P_of);
+  for (int l = 0; l < L; l++) {
+    double H[9], Hbar[9], P[9];
+    LaneGradient(p, l, H);
+    for (int k = 0; k < 9; k++) Hbar[k] = Hbar_of[k][l], P[k] = P_of[k][l];
+    const double q = TLEDAveragePressure(Hbar, P, 1.0 + jbar[l]);
+    if (forces) {
+      TLEDAverageStress(H, r_of[l], 1.0 / (1.0 + p->jm1[l]), 1.0 + jbar[l], q, nodal[l], P);
+      StoreForces(P, G, V0, l, f);
+    } else pbar[l] = q * V0[l];
+  }
+}
+
 /* one pass of the average nodal pressure element: the pressures that elements pass to their nodes, or the forces */
 INLINE void PassAverage(int forces, const TLEDLoops *w, const double u[])
 {
@@ -313,10 +352,12 @@ INLINE void PassAverage(int forces, const TLEDLoops *w, const double u[])
       PackSum(local, s.value[0], 0.25, jbar);
       if (forces) {
         PackSum(local, s.value[1], 1.0, nodal);
-        AverageForcesLaw(m, &p, jbar, nodal, fibre, G, V0, f);
+        if (m->n_prony) AverageViscous(1, w, pack, &p, jbar, nodal, G, V0, NULL, f);
+        else AverageForcesLaw(m, &p, jbar, nodal, fibre, G, V0, f);
         AddForces(local, f, &s);
       } else {
-        AveragePressureLaw(m, &p, jbar, fibre, V0, pbar);
+        if (m->n_prony) AverageViscous(0, w, pack, &p, jbar, NULL, G, V0, pbar, NULL);
+        else AveragePressureLaw(m, &p, jbar, fibre, V0, pbar);
         AddValues(local, pbar, &s);
       }
     }

@@ -60,23 +60,31 @@ INLINE int PointGradients(const double L4[4], const double Jinv[], Pack *p)
   return CountBroken(p->jm1);
 }
 
+/* add the forces of the stress at an integration point of one lane */
+INLINE void AddPoint(const double P[9], const double L4[4], const double Jinv[], const double V0[], int l, Pack *p)
+{
+  double M[9], T[9];
+
+  LaneMatrix(Jinv, l, M);
+  TLEDPullBackT10(P, M, V0[l], T);
+  for (int i = 0; i < 3; i++) {
+    double f[10];
+    for (int b = 0; b < 10; b++) f[b] = p->f[3 * b + i][l];
+    TLEDAddForcesT10(L4, &T[3 * i], f);
+    for (int b = 0; b < 10; b++) p->f[3 * b + i][l] = f[b];
+  }
+}
+
 /* add the forces of an integration point of each lane */
 INLINE void PointForces(const TLEDLaw *m, const double L4[4], const double Jinv[], const double V0[], const double fibre[], Pack *p)
 {
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
-    double H[9], P[9], M[9], T[9], a[3];
+    double H[9], P[9], a[3];
     LaneMatrix(p->H[0], l, H);
     LaneFibre(fibre, l, a);
     TLEDStress(m, a, H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), P);
-    LaneMatrix(Jinv, l, M);
-    TLEDPullBackT10(P, M, V0[l], T);
-    for (int i = 0; i < 3; i++) {
-      double f[10];
-      for (int b = 0; b < 10; b++) f[b] = p->f[3 * b + i][l];
-      TLEDAddForcesT10(L4, &T[3 * i], f);
-      for (int b = 0; b < 10; b++) p->f[3 * b + i][l] = f[b];
-    }
+    AddPoint(P, L4, Jinv, V0, l, p);
   }
 }
 
@@ -108,9 +116,35 @@ FORCES_OF(NeoHookeanIso, TLED_LAW_NEO_HOOKEAN_ISO)
 FORCES_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
 FORCES_OF(Transverse, TLED_LAW_TRANSVERSE)
 
-/* the same by the law of the pack */
-static int PackForcesLaw(const TLEDLaw *m, const TLEDBlocks *b, int pack, const Points *points, Pack *p)
+/* the same of a pack whose material has a Prony series */
+KERNEL int ForcesViscous(const TLEDLoops *w, int pack, const Points *points, Pack *p)
 {
+  const TLEDBlocks *b = w->blocks;
+  double            P_of[9][L] __attribute__((aligned(64)));
+  int               broken = 0;
+
+  for (int q = 0; q < b->n_points; q++) {
+    const int     place = (b->n_points * pack + q) * L;
+    const double *Jinv = b->G + 9 * place, *V0 = b->V0 + place;
+    broken += PointGradients(points->L4[q], Jinv, p);
+    TLEDViscousStress_OpenMP(w, pack, q, 1, p->H, P_of);
+#pragma GCC ivdep
+    for (int l = 0; l < L; l++) {
+      double P[9];
+      LaneMatrix(P_of[0], l, P);
+      AddPoint(P, points->L4[q], Jinv, V0, l, p);
+    }
+  }
+  return broken;
+}
+
+/* the same by the material of the pack */
+static int PackForcesLaw(const TLEDLoops *w, int pack, const Points *points, Pack *p)
+{
+  const TLEDBlocks *b = w->blocks;
+  const TLEDLaw    *m = &w->laws[b->material[pack]];
+
+  if (m->n_prony) return ForcesViscous(w, pack, points, p);
   switch (m->law) {
   case TLED_LAW_NEO_HOOKEAN: return ForcesNeoHookean(m, b, pack, points, p);
   case TLED_LAW_ST_VENANT_KIRCHHOFF: return ForcesStVenantKirchhoff(m, b, pack, points, p);
@@ -148,7 +182,7 @@ void TLEDForcesT10_OpenMP(const TLEDLoops *w, const double u[])
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
       const int *local = b->local + 10 * L * pack;
       LoadPack(local, &s, &p);
-      broken += PackForcesLaw(&w->laws[b->material[pack]], b, pack, &points, &p);
+      broken += PackForcesLaw(w, pack, &points, &p);
       AddForces(local, &p, &s);
     }
     StoreBlock(b, block, &s, w->partial);

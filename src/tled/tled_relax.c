@@ -306,7 +306,10 @@ PetscErrorCode TLEDRelax(TLED tled, PetscReal time, PetscReal tolerance, PetscIn
   PetscCall(PetscArrayzero(x.mode, n));
   x.from = tled->state.time, x.to = time;
   PetscCall(VecGetArray(tled->u, &x.u));
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, PETSC_MAX_REAL); /* at rest, everything has relaxed */
   ierr = RelaxArrays(tled, &x, tolerance, max_steps, &taken);
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
+  if (!ierr) ierr = TLEDCommitViscous_Private(tled, x.u, PETSC_MAX_REAL);
   PetscCall(VecRestoreArray(tled->u, &x.u));
   PetscCall(VecSet(tled->v, 0.0));
   tled->state.time      = time;

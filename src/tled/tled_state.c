@@ -168,6 +168,7 @@ PetscErrorCode TLEDSave(TLED tled)
   PetscCall(VecRestoreArrayRead(tled->v, &from));
   PetscCall(PetscArraycpy(tled->saved + 2 * n, tled->force, n));
   PetscCall(PetscArraycpy(tled->saved + 3 * n, tled->mode, n));
+  if (tled->n_history) PetscCall(PetscArraycpy(tled->saved_history, tled->loops.history, tled->n_history));
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &state));
   tled->saved_state       = tled->state;
   tled->saved_substeps    = tled->substeps;
@@ -196,6 +197,7 @@ PetscErrorCode TLEDRestore(TLED tled)
   PetscCall(VecRestoreArrayWrite(tled->v, &to));
   PetscCall(PetscArraycpy(tled->force, tled->saved + 2 * n, n));
   PetscCall(PetscArraycpy(tled->mode, tled->saved + 3 * n, n));
+  if (tled->n_history) PetscCall(PetscArraycpy(tled->loops.history, tled->saved_history, tled->n_history));
   tled->state       = tled->saved_state;
   tled->substeps    = tled->saved_substeps;
   tled->force_valid = tled->saved_force_valid;
@@ -222,7 +224,7 @@ PetscErrorCode TLEDGetState(TLED tled, PetscInt *n, PetscReal state[])
 
   PetscFunctionBegin;
   PetscCheck(tled->set_up, PetscObjectComm((PetscObject)tled), PETSC_ERR_ORDER, "TLEDSetUp() comes before TLEDGetState()");
-  *n = N_STATE + 2 + 2 * m;
+  *n = N_STATE + 2 + 2 * m + tled->n_history;
   if (!state) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &now));
   PetscCall(PetscMemcpy(state, &tled->state, sizeof tled->state));
@@ -230,6 +232,7 @@ PetscErrorCode TLEDGetState(TLED tled, PetscInt *n, PetscReal state[])
   state[N_STATE + 1] = tled->force_valid && now == tled->force_state ? 1.0 : 0.0;
   PetscCall(PetscArraycpy(&state[N_STATE + 2], tled->mode, m));
   PetscCall(PetscArraycpy(&state[N_STATE + 2 + m], tled->force, m));
+  if (tled->n_history) PetscCall(PetscArraycpy(&state[N_STATE + 2 + 2 * m], tled->loops.history, tled->n_history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -245,13 +248,14 @@ PetscErrorCode TLEDSetState(TLED tled, PetscInt n, const PetscReal state[])
   const PetscInt m = 3 * tled->mesh.n_nodes;
 
   PetscFunctionBegin;
-  PetscCheck(n == N_STATE + 2 + 2 * m, PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_SIZ,
-             "a state of %" PetscInt_FMT " numbers, expected %" PetscInt_FMT, n, N_STATE + 2 + 2 * m);
+  PetscCheck(n == N_STATE + 2 + 2 * m + tled->n_history, PetscObjectComm((PetscObject)tled), PETSC_ERR_ARG_SIZ,
+             "a state of %" PetscInt_FMT " numbers, expected %" PetscInt_FMT, n, N_STATE + 2 + 2 * m + tled->n_history);
   PetscCall(PetscMemcpy(&tled->state, state, sizeof tled->state));
   tled->substeps    = (PetscInt)state[N_STATE];
   tled->force_valid = state[N_STATE + 1] > 0.0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscArraycpy(tled->mode, &state[N_STATE + 2], m));
   PetscCall(PetscArraycpy(tled->force, &state[N_STATE + 2 + m], m));
+  if (tled->n_history) PetscCall(PetscArraycpy(tled->loops.history, &state[N_STATE + 2 + 2 * m], tled->n_history));
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &tled->force_state));
   PetscCall(PetscObjectStateGet((PetscObject)tled->v, &tled->speed_state));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -294,6 +298,6 @@ PetscErrorCode TLEDGetStats(TLED tled, TLEDStats *s)
   s->support_work     = tled->state.support_work;
   s->external_work    = tled->state.external_work + tled->state.support_work;
   s->damping_loss     = tled->state.damping_loss;
-  if (tled->params.stiffness_damping > 0.0) s->damping_loss += tled->state.internal_work - s->strain;
+  if (tled->params.stiffness_damping > 0.0 || tled->loops.viscous) s->damping_loss += tled->state.internal_work - s->strain;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

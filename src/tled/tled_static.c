@@ -36,7 +36,7 @@ static PetscErrorCode BeginWay(TLEDImplicit im, const PetscReal u[], PetscReal t
 
   PetscFunctionBegin;
   way->t_start = im->tled->state.time, way->t_end = t_end;
-  q->share = 1.0, q->inertia = q->viscous = 0.0, q->history = 0.0;
+  q->share = 1.0, q->inertia = q->viscous = 0.0, q->history = PETSC_MAX_REAL;
   PetscCall(PetscArrayzero(q->u0, n));
   PetscCall(PetscCalloc2(n, &way->imbalance, n, &way->offset));
   PetscCall(TLEDPrescribed_Private(im->tled, way->t_start, q->held_at, NULL, NULL));

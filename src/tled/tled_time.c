@@ -54,7 +54,9 @@ static PetscErrorCode RenewCritical(TLED tled, const PetscReal u[], PetscReal ti
   s->look = s->since + RENEW_STEPS;
   if (s->critical > 0.0 && s->since < RENEW_LATEST && !Changed(stretch[0], s->stretch[0]) && !Changed(stretch[1], s->stretch[1]))
     PetscFunctionReturn(PETSC_SUCCESS);
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_INSTANT, 0.0);
   ierr = TLEDCriticalStep_Private(tled, u, s->critical > 0.0 ? FOLLOWING_STEPS : FIRST_STEPS, &s->critical);
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
   if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, time));
   PetscCall(ierr);
   s->stretch[0] = stretch[0], s->stretch[1] = stretch[1];
@@ -189,7 +191,11 @@ static PetscErrorCode KnowForces(TLED tled, const PetscReal u[])
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &state));
   if (tled->force_valid && state == tled->force_state) PetscFunctionReturn(PETSC_SUCCESS);
   tled->state.put_in = 0.0; /* u was changed: its energy is another */
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_COMMIT, 0.0); /* what was done to u from outside was a jump */
   ierr = TLEDForces_Private(tled, u, tled->force);
+  TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
+  if (tled->loops.viscous || tled->params.stiffness_damping > 0.0) /* losses of stresses count from here on */
+    PetscCall(TLEDStrain_Private(tled, u, &tled->state.internal_work, NULL, NULL));
   if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, tled->state.time));
   PetscCall(ierr);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -233,8 +239,10 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
     const PetscInt m    = PetscMin(left, RENEW_STEPS);
     w->step.dt          = h;
     w->start = start + passed, w->end = start + dt, w->left = left;
+    TLEDSetViscous_Private(tled, TLED_VISCOUS_COMMIT, h);
     const PetscInt  done     = Substeps(tled, w, m);
     const PetscBool unstable = TLEDIsUnstable_Private(tled, h);
+    TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
     AddWorks(tled);
     *n_substeps += done;
     tled->state.since += (PetscReal)done;
