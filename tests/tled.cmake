@@ -37,3 +37,12 @@ set_tests_properties(unit.tled.modes PROPERTIES SKIP_RETURN_CODE 77)
 byssus_test(convergence/test_tled_static base tled)
 byssus_test(unit/tled/test_implicit base tled)
 byssus_test(convergence/test_tled_dynamic base tled)
+
+# on two processes
+byssus_test(unit/tled/test_parallel base tled)
+find_program(MPIRUN mpirun)
+if(MPIRUN)
+  add_test(NAME unit.tled.parallel_2 COMMAND ${MPIRUN} -n 2 --oversubscribe $<TARGET_FILE:test.unit.tled.parallel>)
+  set_tests_properties(unit.tled.parallel_2 PROPERTIES LABELS unit TIMEOUT 600 PROCESSORS 2 ENVIRONMENT
+    "BYSSUS_SOURCE=${CMAKE_SOURCE_DIR};OMP_NUM_THREADS=1;OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_btl_base_warn_component_unused=0")
+endif()

@@ -29,7 +29,8 @@ typedef struct TLEDAssembly {
   PetscReal *coupling;    /* 3 a block: C [N/m^0]                    (anp, exact)                       */
   PetscReal *pressure;    /* 1 a block: M [N m]                      (anp, exact)                       */
   PetscBool  average;     /* the last values have the parts of the average nodal pressure element      */
-  Mat        own, B, C, M, MB, S; /* matrices of the last TLEDAssemblyMatrix_Private()                 */
+  Mat        own, B, C, M, MB, S; /* K_e, B, C, M, D and B^T D of the last matrix or operator          */
+  Vec        nodal;       /* a number a node: work of the operator                                     */
 } TLEDAssembly;
 
 PetscErrorCode TLEDAssemblyCreate_Private(MPI_Comm comm, TLED tled, TLEDAssembly **assembly);
@@ -47,6 +48,8 @@ PetscReal TLEDAssemblyTrace_Private(const TLEDAssembly *assembly);
 /* P_a K_ab P_b + held (I - P_a): the constrained directions apart */
 void TLEDAssemblyProject_Private(TLED tled, PetscReal held, TLEDAssembly *assembly);
 /* the values as a matrix, created when *K is NULL, else the one of an earlier call of the same kind */
-PetscErrorCode TLEDAssemblyMatrix_Private(TLED tled, TLEDAssembly *assembly, Mat *K);
+PetscErrorCode TLEDAssemblyMatrix_Private(TLEDAssembly *assembly, Mat *K);
+/* the same, exact for anp, as an operator */
+PetscErrorCode TLEDAssemblyOperator_Private(TLEDAssembly *assembly, Mat *A);
 
 #endif

@@ -109,6 +109,7 @@ PetscErrorCode TLEDImplicitDestroy(TLEDImplicit *implicit)
   PetscCall(VecDestroy(&im->everywhere));
   PetscCall(VecScatterDestroy(&im->scatter));
   PetscCall(MatDestroy(&im->K));
+  PetscCall(MatDestroy(&im->P));
   PetscCall(TLEDAssemblyDestroy_Private(&im->assembly));
   PetscCall(PetscFree6(im->y, im->f_int, im->f_ext, im->residual, im->v, im->a));
   PetscCall(PetscFree3(im->start, im->last, im->trial));
@@ -257,25 +258,40 @@ static PetscErrorCode AllowUnsymmetric(TLEDImplicit im)
 #endif
   }
   PetscCall(MatSetOption(im->K, MAT_SYMMETRIC, PETSC_FALSE));
+  if (im->P) PetscCall(MatSetOption(im->P, MAT_SYMMETRIC, PETSC_FALSE));
   im->unsymmetric = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* tangent of the residual at the displacement x that every rank has, into im->K */
-static PetscErrorCode AssembleTangent(TLEDImplicit im, const PetscReal x[])
+/* tangent of the residual, forces taken at `at`, into the assembly's blocks */
+static PetscErrorCode FillTangent(TLEDImplicit im, const PetscReal x[], TLEDTangentKind kind)
 {
   const TLEDImplicitProblem *q = &im->problem;
 
   PetscFunctionBegin;
   TakenAt(im, x, q->viscous > 0.0 ? PETSC_TRUE : PETSC_FALSE);
-  ByCall(TLEDAssemblyFill_Private(im->tled, im->y, TLED_TANGENT_EXACT, im->assembly));
+  ByCall(TLEDAssemblyFill_Private(im->tled, im->y, kind, im->assembly));
   if (q->share + q->viscous != 1.0) TLEDAssemblyScale_Private(im->assembly, q->share + q->viscous);
   TakenAt(im, x, PETSC_FALSE);
   PetscCall(TLEDExternalTangent_Private(im->tled, q->time, im->y, AddExternal, im));
   if (q->inertia > 0.0) TLEDAssemblyAddMass_Private(im->tled, q->inertia, im->assembly);
   TLEDAssemblyProject_Private(im->tled, im->held, im->assembly);
-  PetscCall(TLEDAssemblyMatrix_Private(im->tled, im->assembly, &im->K));
-  if (im->follows && !im->unsymmetric) PetscCall(AllowUnsymmetric(im));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* tangent at the displacement x that every rank has, into im->K, and into im->P what multigrid is made of: that of the direct neighbours,
+   which for anp is not K */
+static PetscErrorCode AssembleTangent(TLEDImplicit im, const PetscReal x[])
+{
+  PetscFunctionBegin;
+  if (im->by_factors) {
+    ByCall(FillTangent(im, x, TLED_TANGENT_RESPONSE));
+    PetscCall(TLEDAssemblyMatrix_Private(im->assembly, &im->P));
+  }
+  ByCall(FillTangent(im, x, TLED_TANGENT_EXACT));
+  if (im->by_factors) PetscCall(TLEDAssemblyOperator_Private(im->assembly, &im->K));
+  else PetscCall(TLEDAssemblyMatrix_Private(im->assembly, &im->K));
+  if (im->follows && im->snes && !im->unsymmetric) PetscCall(AllowUnsymmetric(im));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -366,9 +382,27 @@ static PetscErrorCode SetNearNullSpace(TLEDImplicit im)
   PetscCall(VecDuplicate(im->x, &X));
   PetscCall(OwnPart(im, im->tled->mesh.X, X));
   PetscCall(MatNullSpaceCreateRigidBody(X, &rigid));
-  PetscCall(MatSetNearNullSpace(im->K, rigid));
+  PetscCall(MatSetNearNullSpace(im->P ? im->P : im->K, rigid));
   PetscCall(MatNullSpaceDestroy(&rigid));
   PetscCall(VecDestroy(&X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Multigrid's own options where the user gives none. Its estimate of a smoother's largest eigenvalue by GMRES is too small for nearly
+   incompressible bodies, and the cycle loses its sign; by conjugate gradients it holds. Levels of less than some hundred unknowns have
+   aggregates with fewer nodes than rigid motions, on which smoothing fails: they are solved directly. */
+static PetscErrorCode DefaultMultigrid(TLEDImplicit im)
+{
+  static const char *const option[][2] = {{"pc_gamg_esteig_ksp_type", "cg"}, {"mg_levels_pc_type", "sor"}, {"pc_gamg_coarse_eq_limit", "1000"}};
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+    char      name[BY_NAME_MAX + 64];
+    PetscBool given;
+    PetscCall(PetscSNPrintf(name, sizeof name, "-%s%s", im->prefix, option[i][0]));
+    PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
+    if (!given) PetscCall(PetscOptionsSetValue(NULL, name, option[i][1]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -399,6 +433,7 @@ static PetscErrorCode ChooseSolvers(TLEDImplicit im)
     PetscCall(KSPSetType(ksp, KSPCG));
     PetscCall(KSPSetTolerances(ksp, 1e-8, 0.0, PETSC_DEFAULT, 1000));
     PetscCall(PCSetType(pc, PCGAMG));
+    PetscCall(DefaultMultigrid(im));
   }
   PetscCall(SNESSetFromOptions(im->snes));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -419,18 +454,19 @@ PetscErrorCode TLEDImplicitSetUp_Private(TLEDImplicit im)
   sum[1] = 3.0 * (PetscReal)(im->assembly->last - im->assembly->first);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, im->comm));
   im->held = sum[0] / sum[1];
-  PetscCall(TLEDAssemblyFill_Private(im->tled, im->y, TLED_TANGENT_EXACT, im->assembly));
-  TLEDAssemblyProject_Private(im->tled, im->held, im->assembly);
-  PetscCall(TLEDAssemblyMatrix_Private(im->tled, im->assembly, &im->K));
+  im->problem.share = 1.0;
+  im->by_factors    = im->tled->loops.anp && 3 * n_nodes >= im->params.direct_below ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(AssembleTangent(im, im->problem.u0));
   PetscCall(MatSetOption(im->K, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(MatCreateVecs(im->K, &im->x, &im->r));
+  if (im->P) PetscCall(MatSetOption(im->P, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatCreateVecs(im->P ? im->P : im->K, &im->x, &im->r));
   PetscCall(VecSetBlockSize(im->x, 3));
   PetscCall(VecScatterCreateToAll(im->x, &im->scatter, &im->everywhere));
   PetscCall(SetNearNullSpace(im));
   PetscCall(SNESCreate(im->comm, &im->snes));
   PetscCall(SNESSetOptionsPrefix(im->snes, im->prefix));
   PetscCall(SNESSetFunction(im->snes, im->r, FormFunction, im));
-  PetscCall(SNESSetJacobian(im->snes, im->K, im->K, FormTangent, im));
+  PetscCall(SNESSetJacobian(im->snes, im->K, im->P ? im->P : im->K, FormTangent, im));
   PetscCall(SNESSetConvergenceTest(im->snes, TestConvergence, im, NULL));
   PetscCall(ChooseSolvers(im));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -490,7 +526,7 @@ PetscErrorCode TLEDImplicitLinear_Private(TLEDImplicit im, const PetscReal x[], 
   PetscFunctionBegin;
   ByCall(AssembleTangent(im, x));
   PetscCall(SNESGetKSP(im->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, im->K, im->K));
+  PetscCall(KSPSetOperators(ksp, im->K, im->P ? im->P : im->K));
   PetscCall(OwnPart(im, rhs, im->r));
   PetscCall(KSPSolve(ksp, im->r, im->x));
   PetscCall(KSPGetConvergedReason(ksp, &reason));

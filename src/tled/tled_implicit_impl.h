@@ -32,7 +32,8 @@ struct _n_TLEDImplicit {
   SNES                snes;   /* NULL before the first solve */
   Vec                 x, r, everywhere;
   VecScatter          scatter;
-  Mat                 K;
+  Mat                 K, P;   /* tangent; what the preconditioner is made of, NULL: K */
+  PetscBool           by_factors; /* K is applied factor by factor (anp, iterative solver) */
   PetscReal           held;   /* stiffness in place of a constrained direction's [N/m] */
   PetscReal           scale;  /* 2-norm of the forces of the last residual [N]         */
   PetscReal           past[2 + PAST]; /* residuals: the first two, then the last ones [N] */

@@ -80,7 +80,7 @@ static PetscErrorCode CreateProblem(MPI_Comm comm, TLED tled, PetscReal apart, P
   ByCall(ierr);
   PetscCall(ScaleByMass(comm, tled, q));
   TLEDAssemblyProject_Private(tled, apart * q->mean * tled->volume * tled->params.elastic.density / (PetscReal)tled->mesh.n_nodes, q->assembly);
-  PetscCall(TLEDAssemblyMatrix_Private(tled, q->assembly, &q->A));
+  PetscCall(TLEDAssemblyMatrix_Private(q->assembly, &q->A));
   PetscCall(MatDiagonalScale(q->A, q->root, q->root));
   PetscCall(MatSetOption(q->A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(EPSCreate(comm, &q->eps));

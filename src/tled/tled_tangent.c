@@ -16,7 +16,7 @@ static PetscErrorCode Tangent(TLED tled, Vec u, TLEDTangentKind kind, Mat *K)
   if (ierr == BY_ERR_BREAKDOWN) ierr = TLEDReportBroken_Private(tled, array, tled->state.time);
   PetscCall(VecRestoreArrayRead(u, &array));
   ByCall(ierr);
-  PetscCall(TLEDAssemblyMatrix_Private(tled, tled->assembly, K));
+  PetscCall(TLEDAssemblyMatrix_Private(tled->assembly, K));
   PetscCall(PetscLogEventEnd(TLED_EVENT_TANGENT, tled, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
