@@ -356,3 +356,181 @@ PetscErrorCode SurfaceWinding(PetscInt n_points, const PetscReal points[], const
   PetscCall(TreeDestroy(&tree));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* A surface at rest, ready for many questions: buckets, and the pseudonormals of its vertices and edges, whose sign tells inside from outside
+   [J. A. Baerentzen & H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243]: the sum of the normals of the faces around an edge, the sum
+   weighted with their angles around a vertex. */
+struct _SurfaceIndex {
+  Buckets    buckets;
+  PetscInt   n_triangles;
+  PetscReal *x;
+  PetscInt  *triangles;
+  PetscReal *vertex; /* n_nodes x 3                          */
+  PetscReal *edge;   /* n_triangles x 3 x 3, of the edges 01, 12, 20 */
+};
+
+static void UnitNormal(const PetscReal x[], const PetscInt v[3], double n[3])
+{
+  double a[3], b[3], l;
+
+  Sub3(&x[3*v[1]], &x[3*v[0]], a), Sub3(&x[3*v[2]], &x[3*v[0]], b);
+  Cross3(a, b, n);
+  l = Norm3(n);
+  for (int k = 0; k < 3; k++) n[k] = l > 0.0 ? n[k]/l : 0.0;
+}
+
+/* angle of a triangle at its corner c */
+static double CornerAngle(const PetscReal x[], const PetscInt v[3], int c)
+{
+  double a[3], b[3], n[3];
+
+  Sub3(&x[3*v[(c + 1)%3]], &x[3*v[c]], a), Sub3(&x[3*v[(c + 2)%3]], &x[3*v[c]], b);
+  Cross3(a, b, n);
+  return atan2(Norm3(n), Dot3(a, b));
+}
+
+/* normals of vertices and edges; an edge's other triangle is among those around its first vertex */
+static PetscErrorCode FillNormals(SurfaceIndex s, PetscInt n_nodes)
+{
+  PetscInt *start, *around;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc2(n_nodes + 2, &start, 3*s->n_triangles, &around));
+  for (PetscInt i = 0; i < 3*s->n_triangles; i++) start[s->triangles[i] + 2]++;
+  for (PetscInt a = 0; a < n_nodes; a++) start[a + 2] += start[a + 1];
+  for (PetscInt i = 0; i < 3*s->n_triangles; i++) around[start[s->triangles[i] + 1]++] = i/3;
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    const PetscInt *v = &s->triangles[3*t];
+    double          n[3];
+    UnitNormal(s->x, v, n);
+    for (int c = 0; c < 3; c++) {
+      const PetscInt a = v[c], b = v[(c + 1)%3];
+      const double   angle = CornerAngle(s->x, v, c);
+      for (int k = 0; k < 3; k++) s->vertex[3*a + k] += angle*n[k], s->edge[9*t + 3*c + k] += n[k];
+      for (PetscInt i = start[a]; i < start[a + 1]; i++) {
+        const PetscInt *w = &s->triangles[3*around[i]];
+        double          m[3];
+        if (around[i] == t || (w[0] != b && w[1] != b && w[2] != b)) continue;
+        UnitNormal(s->x, w, m);
+        for (int k = 0; k < 3; k++) s->edge[9*t + 3*c + k] += m[k];
+      }
+    }
+  }
+  PetscCall(PetscFree2(start, around));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceIndexCreate - make a closed surface at rest ready for SurfaceIndexNearest()
+
+  Input Parameters:
++ n_nodes, x             - node positions [m], n_nodes x 3, copied
+. n_triangles, triangles - n_triangles x 3 node numbers, outward, copied
+- reach                  - largest distance [m] that will be asked for
+
+  Output Parameter:
+. index - SurfaceIndexDestroy() frees it
+@*/
+PetscErrorCode SurfaceIndexCreate(PetscInt n_nodes, const PetscReal x[], PetscInt n_triangles, const PetscInt triangles[], PetscReal reach, SurfaceIndex *index)
+{
+  SurfaceIndex s;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  s->n_triangles = n_triangles;
+  PetscCall(PetscMalloc2(3*n_nodes, &s->x, 3*n_triangles, &s->triangles));
+  PetscCall(PetscArraycpy(s->x, x, 3*n_nodes));
+  PetscCall(PetscArraycpy(s->triangles, triangles, 3*n_triangles));
+  PetscCall(PetscCalloc2(3*n_nodes, &s->vertex, 9*n_triangles, &s->edge));
+  PetscCall(FillNormals(s, n_nodes));
+  PetscCall(BucketsCreate(s->x, n_triangles, s->triangles, reach, &s->buckets));
+  *index = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceIndexDestroy(SurfaceIndex *index)
+{
+  PetscFunctionBegin;
+  if (!*index) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BucketsDestroy(&(*index)->buckets));
+  PetscCall(PetscFree2((*index)->x, (*index)->triangles));
+  PetscCall(PetscFree2((*index)->vertex, (*index)->edge));
+  PetscCall(PetscFree(*index));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sign and kind of the foot a + v ab + w ac on triangle t: 2 in the face, 1 on an edge (whose direction goes to `along`), 0 at a vertex */
+static int FootNormal(SurfaceIndex s, PetscInt t, const double foot[2], double normal[3], double along[3])
+{
+  const PetscInt *v      = &s->triangles[3*t];
+  const double    L[3]   = {1.0 - foot[0] - foot[1], foot[0], foot[1]}, none = 1e-12;
+  const int       zero[3] = {L[0] < none, L[1] < none, L[2] < none};
+
+  for (int k = 0; k < 3; k++) along[k] = 0.0;
+  if (zero[0] + zero[1] + zero[2] == 2) {
+    const int c = !zero[0] ? 0 : !zero[1] ? 1 : 2;
+    for (int k = 0; k < 3; k++) normal[k] = s->vertex[3*v[c] + k];
+    return 0;
+  }
+  if (zero[0] + zero[1] + zero[2] == 1) {
+    const int c = zero[0] ? 1 : zero[1] ? 2 : 0; /* the edge after the corner that is not on it begins at c */
+    double    l;
+    Sub3(&s->x[3*v[(c + 1)%3]], &s->x[3*v[c]], along);
+    l = Norm3(along);
+    for (int k = 0; k < 3; k++) normal[k] = s->edge[9*t + 3*c + k], along[k] /= l;
+    return 1;
+  }
+  UnitNormal(s->x, v, normal);
+  return 2;
+}
+
+/* nearest triangle not farther than `reach`, of equally near ones the one of lowest number; -1 when there is none. The answer does not
+   depend on reach as long as that is no less than the distance. */
+static PetscInt NearestTriangle(SurfaceIndex s, const double p[3], double reach, double foot[2], double *d2)
+{
+  const Buckets *b = &s->buckets;
+  double         lo[3], hi[3], f[2];
+  PetscInt       first[3], last[3], found = -1;
+
+  *d2 = reach*reach;
+  for (int k = 0; k < 3; k++) {
+    lo[k] = p[k] - reach, hi[k] = p[k] + reach;
+    if (!(hi[k] >= b->lo[k] && lo[k] <= b->hi[k])) return -1;
+  }
+  BucketRange(b, lo, hi, first, last);
+  for (PetscInt z = first[2]; z <= last[2]; z++) {
+    for (PetscInt y = first[1]; y <= last[1]; y++) {
+      for (PetscInt w = first[0]; w <= last[0]; w++) {
+        const PetscInt c = (z*b->dims[1] + y)*b->dims[0] + w;
+        for (PetscInt k = b->start[c]; k < b->start[c + 1]; k++) {
+          const PetscInt  t  = b->item[k], *v = &s->triangles[3*t];
+          const double    d  = TriangleDistance2(p, &s->x[3*v[0]], &s->x[3*v[1]], &s->x[3*v[2]], f);
+          if (d > *d2 || (d == *d2 && found >= 0 && t >= found)) continue;
+          *d2 = d, found = t, foot[0] = f[0], foot[1] = f[1];
+        }
+      }
+    }
+  }
+  return found;
+}
+
+/* The signed distance of a point, negative inside, when its size is not more than `reach`. No PETSc inside: may be called in a parallel
+   region. */
+PetscBool SurfaceIndexNearest(SurfaceIndex s, const PetscReal p[3], PetscReal reach, SurfaceFoot *at)
+{
+  double         foot[2] = {0.0, 0.0}, d2, pseudo[3], r[3];
+  const PetscInt t = NearestTriangle(s, p, reach, foot, &d2);
+
+  if (t < 0) return PETSC_FALSE;
+  const PetscInt *v = &s->triangles[3*t];
+  at->kind = FootNormal(s, t, foot, pseudo, at->along);
+  for (int k = 0; k < 3; k++) {
+    r[k] = p[k] - (1.0 - foot[0] - foot[1])*s->x[3*v[0] + k] - foot[0]*s->x[3*v[1] + k] - foot[1]*s->x[3*v[2] + k];
+  }
+  const double sign = Dot3(r, pseudo) < 0.0 ? -1.0 : 1.0, d = sqrt(d2);
+  at->distance = sign*d;
+  if (at->kind == 2 || !(d > 0.0)) UnitNormal(s->x, v, at->normal);
+  else
+    for (int k = 0; k < 3; k++) at->normal[k] = sign*r[k]/d;
+  return PETSC_TRUE;
+}

@@ -29,4 +29,21 @@ BY_EXTERN PetscErrorCode SurfaceDistance(PetscInt n_points, const PetscReal poin
 BY_EXTERN PetscErrorCode SurfaceClosest(PetscInt n_points, const PetscReal points[], const PetscReal x[], PetscInt n_triangles, const PetscInt triangles[],
                                         PetscReal reach, PetscReal distance[], PetscInt triangle[], PetscReal weights[]);
 
+/* A closed surface at rest for many questions: from inside a parallel region, and with a sign. */
+typedef struct _SurfaceIndex *SurfaceIndex;
+
+typedef struct {
+  PetscReal distance;  /* [m], negative inside                                                      */
+  PetscReal normal[3]; /* unit vector: the gradient of the distance                                 */
+  int       kind;      /* of the place next to the point: 2 in a face, 1 on an edge, 0 at a vertex  */
+  PetscReal along[3];  /* unit vector along that edge                                               */
+} SurfaceFoot;
+
+/* reach: the largest distance [m] that will be asked for; arrays are copied */
+BY_EXTERN PetscErrorCode SurfaceIndexCreate(PetscInt n_nodes, const PetscReal x[], PetscInt n_triangles, const PetscInt triangles[],
+                                            PetscReal reach, SurfaceIndex *index);
+BY_EXTERN PetscErrorCode SurfaceIndexDestroy(SurfaceIndex *index);
+/* where a point is, when it is not farther than reach; PETSC_FALSE when it is */
+BY_EXTERN PetscBool SurfaceIndexNearest(SurfaceIndex index, const PetscReal point[3], PetscReal reach, SurfaceFoot *foot);
+
 #endif

@@ -196,9 +196,10 @@ PetscErrorCode TLEDSetUp(TLED tled)
   ByCall(TLEDConstraintsSetUp_Private(tled));
   ByCall(PickWetted(tled));
   ByCall(TLEDLoadsSetUp_Private(tled));
-  tled->is_free = (PetscBool)(tled->constraints.n_held == 0 && tled->loads.n == 0);
+  tled->is_free = (PetscBool)(tled->constraints.n_held == 0 && tled->loads.n == 0 && tled->contact.n == 0);
   PetscCall(TLEDLumpMass_Private(tled));
   PetscCall(SetUpLoops(tled));
+  ByCall(TLEDContactSetUp_Private(tled));
   PetscCall(CreateVectors(tled));
   PetscCall(TLEDScaleMass_Private(tled));
   tled->set_up = PETSC_TRUE;
@@ -268,6 +269,7 @@ PetscErrorCode TLEDDestroy(TLED *tled)
   PetscCall(PetscFree2(t->motion, t->constrained));
   PetscCall(TLEDConstraintsDestroy_Private(&t->constraints));
   PetscCall(TLEDLoadsDestroy_Private(&t->loads));
+  PetscCall(TLEDContactDestroy_Private(&t->contact));
   PetscCall(VecDestroy(&t->u));
   PetscCall(VecDestroy(&t->v));
   PetscCall(VecDestroy(&t->f));

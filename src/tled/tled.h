@@ -4,6 +4,7 @@
 
 #include "course.h"
 #include "keys.h"
+#include "surface.h"
 #include <petscmat.h>
 
 typedef struct _p_TLED *TLED;
@@ -50,6 +51,8 @@ typedef struct {
   Names     prescribed;               /* physical groups moved                                               */
   Names     constraints;              /* supports, a section each (TLEDConstraintParams)                     */
   Names     loads;                    /* a section each (TLEDLoadParams)                                     */
+  Names     contact;                  /* walls and obstacles that it cannot pass; the coupler adds them      */
+  PetscReal contact_stiffness;        /* k [Pa/m] of tled_contact.h; 0 = from Young's modulus                */
   Names     wetted;                   /* surface groups in contact with fluid; empty = whole boundary        */
   int       element;   /* TLEDElement; auto = t10 on a second-order mesh, else anp above nu 0.4, else t4 */
   int       quadrature; /* TLEDQuadrature: integration points of t10                                  */
@@ -95,6 +98,9 @@ BY_EXTERN PetscErrorCode TLEDAddMaterial(TLED tled, const char name[], const TLE
 BY_EXTERN PetscErrorCode TLEDAddConstraint(TLED tled, const char name[], const TLEDConstraintParams *params);
 /* a load, the same way */
 BY_EXTERN PetscErrorCode TLEDAddLoad(TLED tled, const char name[], const TLEDLoadParams *params);
+/* contact with a plane (the body is on the side of the normal) and with a closed surface at rest, before SetUp; frictionless */
+BY_EXTERN PetscErrorCode TLEDAddContactPlane(TLED tled, const char name[], const PetscReal point[3], const PetscReal normal[3]);
+BY_EXTERN PetscErrorCode TLEDAddContactSurface(TLED tled, const char name[], const Surface *surface);
 BY_EXTERN PetscErrorCode TLEDSetGravity(TLED tled, const PetscReal g[3]);
 BY_EXTERN PetscErrorCode TLEDSetUp(TLED tled);
 BY_EXTERN PetscErrorCode TLEDView(TLED tled, PetscViewer viewer);
@@ -113,7 +119,7 @@ BY_EXTERN PetscErrorCode TLEDGetElementName(TLED tled, const char *name[]);
 BY_EXTERN PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[]); /* lumped, n_nodes [kg] */
 /* mass that mass scaling added: [kg], and per cent of the mass before; either may be NULL */
 BY_EXTERN PetscErrorCode TLEDGetAddedMass(TLED tled, PetscReal *mass, PetscReal *percent);
-BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* nothing but f and gravity acts: no support, no load */
+BY_EXTERN PetscErrorCode TLEDIsFree(TLED tled, PetscBool *free);          /* nothing but f and gravity acts: no support, load, contact */
 /* n_nodes: which nodes are not entirely free: held in some direction, or moved */
 BY_EXTERN PetscErrorCode TLEDIsConstrained(TLED tled, const PetscBool *constrained[]);
 /* projector of a node onto its free directions, 3 x 3 row-major, borrowed; NULL when it is entirely free */
@@ -165,6 +171,7 @@ typedef struct {
   PetscReal kinetic, strain, gravity_potential; /* [J]                                      */
   PetscReal damping_loss, external_work;        /* [J] since the start; of f, loads and supports */
   PetscReal support_work;                       /* [J] the supports' part of external_work  */
+  PetscReal contact_energy;                     /* [J] stored in contact                    */
   PetscReal momentum[3], angular[3];            /* about the origin                         */
   PetscReal volume, volume_reference;           /* [m^3]                                    */
   PetscReal speed_max;                          /* [m/s]                                    */

@@ -114,7 +114,7 @@ PetscErrorCode TLEDWatch_Private(TLED tled, const PetscReal u[], const PetscReal
 {
   TLEDState      *s        = &tled->state;
   const PetscReal limit    = tled->params.step_limit;
-  const PetscReal critical = s->critical == PETSC_MAX_REAL ? s->critical : TLEDStableStep(s->critical, tled->params.stiffness_damping);
+  const PetscReal critical = TLEDStableStep_Private(tled);
   PetscReal       kinetic = 0.0, gravity = 0.0, strain;
   double          x[3];
 
@@ -130,6 +130,7 @@ PetscErrorCode TLEDWatch_Private(TLED tled, const PetscReal u[], const PetscReal
     PetscFunctionReturn(BY_ERR_BREAKDOWN);
   }
   PetscCall(TLEDStrain_Private(tled, u, &strain, NULL, NULL));
+  strain += TLEDContactEnergy_Private(tled, u);
   for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
     kinetic += 0.5 * tled->mass[a] * Dot3(&v[3 * a], &v[3 * a]);
     gravity += tled->mass[a] * Dot3(tled->gravity, &u[3 * a]);
@@ -157,7 +158,7 @@ PetscBool TLEDIsUnstable_Private(TLED tled, PetscReal dt)
 {
   const TLEDState *s        = &tled->state;
   const PetscInt   n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
-  const PetscReal  critical = s->critical == PETSC_MAX_REAL ? s->critical : TLEDStableStep(s->critical, tled->params.stiffness_damping);
+  const PetscReal  critical = TLEDStableStep_Private(tled);
   const PetscReal  r        = dt < NEAREST * critical ? dt / critical : NEAREST;
   PetscReal owned = s->internal_work + s->damping_loss - s->external_work - s->support_work, given = s->external_work + s->support_work;
 
@@ -184,7 +185,7 @@ PetscErrorCode TLEDReportUnstable_Private(TLED tled, const PetscReal u[], PetscR
                           "body %s: the motion is unstable at time %.6g s: it has energy that nobody gave it; the step is %.4g s, the critical one was %.4g s; element %" PetscInt_FMT
                           " of the mesh file at (%.4g, %.4g, %.4g) m is strained most",
                           ((PetscObject)tled)->name, (double)time, (double)dt,
-                          (double)TLEDStableStep(tled->state.critical, tled->params.stiffness_damping), tled->mesh.tag[e], x[0], x[1],
+                          (double)TLEDStableStep_Private(tled), tled->mesh.tag[e], x[0], x[1],
                           x[2]));
   PetscFunctionReturn(BY_ERR_BREAKDOWN);
 }

@@ -6,6 +6,7 @@
 #include "tled/tled_constraint.h"
 #include "tled/tled_step.h"
 #include "tled/tled_element.h"
+#include "surface.h"
 #include <petsc/private/petscimpl.h>
 
 #define TLED_LANES           8   /* elements that are worked on at once: one AVX-512 register of doubles          */
@@ -170,6 +171,26 @@ typedef struct {
   int      *slot;        /* places of the node in face_force, in threes                         */
 } TLEDLoads;
 
+/* What the body's surface cannot pass: a plane, or a closed surface at rest. */
+typedef struct {
+  char         name[BY_NAME_MAX];
+  double       normal[3], offset; /* of a plane: n . x >= offset [m]                                        */
+  Surface      surface;           /* of a surface                                                           */
+  SurfaceIndex index;             /* NULL for a plane                                                       */
+  double      *last;              /* n_nodes x 4: where a node was when its distance was last found, and that */
+} TLEDObstacle;
+
+typedef struct {
+  PetscInt      n;
+  TLEDObstacle *item;
+  double       *area;      /* n_nodes: of the undeformed surface [m^2]                             */
+  double        reach;     /* mean edge of the surface's triangles [m]                             */
+  double        soft;      /* depth over which the pressure sets in [m]                            */
+  double        stiffness; /* [Pa/m]                                                               */
+  double        crowding;  /* largest eigenvalue of the sum of n n^T of surfaces touched together  */
+  double        rate;      /* largest stiffness over mass of a node [1/s^2], known with state.critical */
+} TLEDContact;
+
 /* State that Advance changes; u and v apart (they are Vecs). */
 typedef struct {
   PetscReal time;          /* [s]                                                                   */
@@ -203,6 +224,7 @@ struct _p_TLED {
   signed char *motion;         /* n_nodes: TLED_FREE, TLED_FIXED at rest, TLED_HELD any other */
   TLEDConstraints constraints;
   TLEDLoads    loads;
+  TLEDContact  contact;
   PetscBool    is_free;
   TLEDBlocks   blocks;
   TLEDLoops    loops;
@@ -310,6 +332,15 @@ PetscErrorCode TLEDExternalForces_Private(TLED tled, PetscReal t, const PetscRea
 /* add(ctx, a, b, K): the 3 x 3 blocks of -df_ext/du, row node a, column node b, of what follows the surface; may come more than once */
 typedef PetscErrorCode (*TLEDAddBlock)(void *ctx, PetscInt a, PetscInt b, const PetscReal K[9]);
 PetscErrorCode TLEDExternalTangent_Private(TLED tled, PetscReal t, const PetscReal u[], TLEDAddBlock add, void *ctx);
+/* tled_time.c: largest stable step of the state with contact and stiffness damping [s], once the critical step is known */
+PetscReal TLEDStableStep_Private(TLED tled);
+/* tled_contact.c */
+PetscErrorCode TLEDContactSetUp_Private(TLED tled);
+PetscErrorCode TLEDContactDestroy_Private(TLEDContact *contact);
+double         TLEDContactAt_Private(TLED tled, PetscInt node, const double u[3], double f[3], double K[9], double *deep);
+double         TLEDContactEnergy_Private(TLED tled, const double u[]);
+double         TLEDContactRate_Private(TLED tled, const double mass[]); /* [1/s^2] */
+PetscErrorCode TLEDContactReport_Private(TLED tled, const PetscReal u[], PetscReal time);
 /* f(u), raw arrays; returns BY_ERR_BREAKDOWN (with no message) when an element is broken */
 PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[]);
 

@@ -40,6 +40,8 @@ const Key TLEDKeys[] = {
     ROW(prescribed_velocity, KEY_VEC3, "m/s", "0,0,0", -1e6, 1e6, 0, NULL, "velocity of the groups in prescribed"),
     ROW(constraints, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "supports of other kinds, a section of the body each"),
     ROW(loads, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "pressures, tractions and forces, a section of the body each"),
+    ROW(contact, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "walls of the domain and obstacles that the body cannot pass"),
+    ROW(contact_stiffness, KEY_REAL, "Pa/m", "0", 0, 1e30, 0, NULL, "contact pressure over depth; 0: twice Young's modulus over the mean edge of the surface"),
     ROW(wetted, KEY_NAMES, "", NULL, 0, 0, 0, NULL, "surface groups that touch the fluid; none named: the whole boundary"),
     ROW(damping, KEY_REAL, "1/s", "0", 0, 1e9, 0, NULL, "mass-proportional damping"),
     ROW(stiffness_damping, KEY_REAL, "s", "0", 0, 1e3, 0, NULL, "stiffness-proportional damping; a body in water that does not name it has 0.05 of its critical step"),

@@ -361,6 +361,7 @@ PetscErrorCode TLEDExternalForces_Private(TLED tled, PetscReal t, const PetscRea
     for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
       for (int k = 0; k < 3; k++) f[3 * a + k] = held[3 * a + k] + tled->mass[a] * tled->gravity[k];
       if (l->n) TLEDAddLoads_Private(l, (int)a, &f[3 * a]);
+      if (tled->contact.n) (void)TLEDContactAt_Private(tled, a, &u[3 * a], &f[3 * a], NULL, NULL);
     }
   }
   PetscCall(VecRestoreArrayRead(tled->f, &held));
@@ -396,6 +397,10 @@ PetscErrorCode TLEDExternalTangent_Private(TLED tled, PetscReal t, const PetscRe
         TLEDFaceStiffness(n, x, p, a, b, K);
         PetscCall(add(ctx, node[a], node[b], K));
       }
+  }
+  for (PetscInt a = 0; a < mesh->n_nodes && tled->contact.n; a++) {
+    PetscReal K[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    if (TLEDContactAt_Private(tled, a, &u[3 * a], NULL, K, NULL) > 0.0) PetscCall(add(ctx, a, a, K));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,7 +59,7 @@ PetscErrorCode TLEDGetMass(TLED tled, const PetscReal *mass[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ TLEDIsFree - whether nothing but f and gravity acts on the body: no support, no load @*/
+/*@ TLEDIsFree - whether nothing but f and gravity acts on the body: no support, no load, no contact @*/
 PetscErrorCode TLEDIsFree(TLED tled, PetscBool *is_free)
 {
   PetscFunctionBegin;
@@ -281,6 +281,7 @@ PetscErrorCode TLEDGetStats(TLED tled, TLEDStats *s)
   PetscCall(VecGetArrayRead(tled->u, &u));
   PetscCall(VecGetArrayRead(tled->v, &v));
   PetscCall(TLEDStrain_Private(tled, u, &s->strain, &s->volume, NULL));
+  s->contact_energy = TLEDContactEnergy_Private(tled, u);
   for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
     const PetscReal m = tled->mass[a], v2 = Dot3(&v[3 * a], &v[3 * a]);
     PetscReal       x[3], r[3];
@@ -298,6 +299,6 @@ PetscErrorCode TLEDGetStats(TLED tled, TLEDStats *s)
   s->support_work     = tled->state.support_work;
   s->external_work    = tled->state.external_work + tled->state.support_work;
   s->damping_loss     = tled->state.damping_loss;
-  if (tled->params.stiffness_damping > 0.0 || tled->loops.viscous) s->damping_loss += tled->state.internal_work - s->strain;
+  if (tled->params.stiffness_damping > 0.0 || tled->loops.viscous) s->damping_loss += tled->state.internal_work - s->strain - s->contact_energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

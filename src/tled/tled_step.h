@@ -12,9 +12,10 @@
 
 enum { TLED_FREE = 0, TLED_FIXED = 1, TLED_HELD = 2 }; /* free; at rest; held in some direction, or moved */
 /* what a step adds up: works [J] and the moment of the external forces about the origin [N m s]; and what the nodes have at the end of it:
-   kinetic energy and the work of gravity since u = 0 [J], and the part of the sums that belongs to the first half of the next */
+   kinetic energy and the work of gravity since u = 0 [J], and the part of the sums that belongs to the first half of the next; and how
+   many nodes are deep in an obstacle */
 enum { TLED_SUM_EXTERNAL = 0, TLED_SUM_DAMPING = 1, TLED_SUM_INTERNAL = 2, TLED_SUM_MOMENT = 3, TLED_SUM_SUPPORT = 6,
-       TLED_SUM_KINETIC = 7, TLED_SUM_GRAVITY = 8, TLED_SUM_OPENED = 9, TLED_SUMS = 12 };
+       TLED_SUM_KINETIC = 7, TLED_SUM_GRAVITY = 8, TLED_SUM_OPENED = 9, TLED_SUM_DEEP = 11, TLED_SUMS = 12 };
 
 typedef struct {
   double dt;           /* [s]                                                   */

@@ -1,4 +1,5 @@
 /* tled_time.c - advancing the body: substeps of the stable size, the works that go with them, breakdown. */
+#include "tled/tled_contact.h"
 #include "tled/tled_impl.h"
 
 #define RENEW_STEPS 64     /* substeps between two looks at the deformation                                        */
@@ -20,14 +21,22 @@ PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* largest step that the state permits [s]: the one that the user fixed, or the critical one, shortened by stiffness damping, times the safety factor */
-static PetscReal LargestStep(TLED tled)
+/* largest stable step of the state [s]: the critical one, shortened by contact and stiffness damping */
+PetscReal TLEDStableStep_Private(TLED tled)
 {
   const PetscReal critical = tled->state.critical;
 
-  if (tled->params.step > 0.0) return tled->params.step;
   if (critical == PETSC_MAX_REAL) return PETSC_MAX_REAL;
-  return tled->params.safety * TLEDStableStep(critical, tled->params.stiffness_damping);
+  return TLEDStableStep(TLEDContactStep(critical, tled->contact.rate), tled->params.stiffness_damping);
+}
+
+/* largest step that is taken [s]: the one that the user fixed, or the stable one times the safety factor */
+static PetscReal LargestStep(TLED tled)
+{
+  const PetscReal stable = TLEDStableStep_Private(tled);
+
+  if (tled->params.step > 0.0) return tled->params.step;
+  return stable == PETSC_MAX_REAL ? stable : tled->params.safety * stable;
 }
 
 static PetscInt CountSubsteps(TLED tled, PetscReal dt)
@@ -49,6 +58,7 @@ static PetscErrorCode RenewCritical(TLED tled, const PetscReal u[], PetscReal ti
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
+  if (tled->contact.n && !(tled->contact.rate > 0.0)) tled->contact.rate = TLEDContactRate_Private(tled, tled->mass);
   if (s->critical > 0.0 && s->since < s->look) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDStrain_Private(tled, u, NULL, NULL, stretch));
   s->look = s->since + RENEW_STEPS;
@@ -115,6 +125,15 @@ static void FollowCourses(TLED tled, const Work *w, PetscInt s)
   if (tled->loads.n_faces) TLEDFaceForces_OpenMP(&tled->loads, &tled->mesh, w->u);
 }
 
+/* contact takes its part of a node's internal forces: both are gradients of stored energy */
+static void AddContact(TLED tled, PetscInt a, const double u[3], double force[3], double *deep)
+{
+  double push[3] = {0.0, 0.0, 0.0};
+
+  (void)TLEDContactAt_Private(tled, a, u, push, NULL, deep);
+  for (int k = 0; k < 3; k++) force[k] -= push[k];
+}
+
 /* One pass over the nodes, chunk by chunk: close the substep before (gathering its forces) and open the next. All threads
    call it. */
 static void NodePass(TLED tled, const Work *w, int close, int open)
@@ -140,6 +159,7 @@ static void NodePass(TLED tled, const Work *w, int close, int open)
         double f[3] = {0.0, 0.0, 0.0};
         for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++)
           for (int i = 0; i < 3; i++) f[i] += loops->partial[3 * b->slot[k] + i];
+        if (tled->contact.n) AddContact(tled, a, u, f, &sum[TLED_SUM_DEEP]);
         for (int i = 0; i < 3; i++) force[i] = f[i];
         if (tled->motion[a] == TLED_FREE) TLEDStepClose(&w->step, tled->mass[a], force, f_ext, v, sum);
         else if (tled->motion[a] == TLED_HELD) CloseHeld(tled, w, a, force, f_ext, v, sum);
@@ -181,7 +201,7 @@ static PetscInt Substeps(TLED tled, const Work *w, PetscInt m)
   return done;
 }
 
-/* forces at the current u unless they are known from the last substep */
+/* forces (of elements and contact) at the current u unless they are known from the last substep */
 static PetscErrorCode KnowForces(TLED tled, const PetscReal u[])
 {
   PetscObjectState state;
@@ -194,17 +214,21 @@ static PetscErrorCode KnowForces(TLED tled, const PetscReal u[])
   TLEDSetViscous_Private(tled, TLED_VISCOUS_COMMIT, 0.0); /* what was done to u from outside was a jump */
   ierr = TLEDForces_Private(tled, u, tled->force);
   TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
-  if (tled->loops.viscous || tled->params.stiffness_damping > 0.0) /* losses of stresses count from here on */
+  if (tled->loops.viscous || tled->params.stiffness_damping > 0.0) { /* losses of stresses count from here on */
     PetscCall(TLEDStrain_Private(tled, u, &tled->state.internal_work, NULL, NULL));
+    tled->state.internal_work += TLEDContactEnergy_Private(tled, u);
+  }
   if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, tled->state.time));
   PetscCall(ierr);
+  for (PetscInt a = 0; a < tled->mesh.n_nodes && tled->contact.n; a++) AddContact(tled, a, &u[3 * a], &tled->force[3 * a], NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* add up the chunks' works in order */
-static void AddWorks(TLED tled)
+/* add up the chunks' works in order; returns how often a node was deep in an obstacle */
+static PetscReal AddWorks(TLED tled)
 {
   const PetscInt n_chunks = (tled->mesh.n_nodes + TLED_CHUNK - 1) / TLED_CHUNK;
+  PetscReal      deep     = 0.0;
 
   for (PetscInt c = 0; c < n_chunks; c++) {
     PetscReal *sum = &tled->sums[TLED_SUMS * c];
@@ -213,8 +237,10 @@ static void AddWorks(TLED tled)
     tled->state.damping_loss += sum[TLED_SUM_DAMPING];
     tled->state.internal_work += sum[TLED_SUM_INTERNAL];
     for (PetscInt k = 0; k < 3; k++) tled->state.moment[k] += sum[TLED_SUM_MOMENT + k];
+    deep += sum[TLED_SUM_DEEP];
     for (PetscInt k = 0; k < TLED_SUMS; k++) sum[k] = 0.0;
   }
+  return deep;
 }
 
 static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *n_substeps)
@@ -242,8 +268,8 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
     TLEDSetViscous_Private(tled, TLED_VISCOUS_COMMIT, h);
     const PetscInt  done     = Substeps(tled, w, m);
     const PetscBool unstable = TLEDIsUnstable_Private(tled, h);
+    const PetscReal deep     = AddWorks(tled);
     TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
-    AddWorks(tled);
     *n_substeps += done;
     tled->state.since += (PetscReal)done;
     passed += h * (PetscReal)done;
@@ -252,6 +278,10 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
       tled->state.time = start + passed + h;
       if (unstable) PetscFunctionReturn(TLEDReportUnstable_Private(tled, w->u, start + passed + h, h));
       PetscFunctionReturn(TLEDReportBroken_Private(tled, w->beta > 0.0 ? w->probe : w->u, start + passed + h));
+    }
+    if (deep > 0.0) {
+      tled->state.time = start + passed;
+      PetscFunctionReturn(TLEDContactReport_Private(tled, w->u, start + passed));
     }
   } while (left);
   tled->state.time      = start + dt;
@@ -348,8 +378,8 @@ PetscErrorCode TLEDGetSubsteps(TLED tled, PetscReal dt, PetscInt *n_substeps)
 /*@
   TLEDGetCriticalStep - largest stable step of the current state [s], without the safety factor
 
-  2/omega_max by power iteration, shortened when there is stiffness damping; computed afresh by this call. PETSC_MAX_REAL when no
-node is free.
+  2/omega_max by power iteration, shortened when there is contact or stiffness damping; computed afresh by this call. PETSC_MAX_REAL
+when no node is free.
 
   Errors: BY_ERR_BREAKDOWN when an element of the current state is inverted
 
@@ -360,7 +390,6 @@ PetscErrorCode TLEDGetCriticalStep(TLED tled, PetscReal *dt)
   PetscFunctionBegin;
   tled->state.critical = 0.0;
   ByCall(RenewNow(tled));
-  *dt = tled->state.critical == PETSC_MAX_REAL ? PETSC_MAX_REAL
-                                               : TLEDStableStep(tled->state.critical, tled->params.stiffness_damping);
+  *dt = TLEDStableStep_Private(tled);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
