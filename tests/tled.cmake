@@ -47,3 +47,6 @@ if(MPIRUN)
   set_tests_properties(unit.tled.parallel_2 PROPERTIES LABELS unit TIMEOUT 600 PROCESSORS 2 ENVIRONMENT
     "BYSSUS_SOURCE=${CMAKE_SOURCE_DIR};OMP_NUM_THREADS=1;OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_btl_base_warn_component_unused=0")
 endif()
+# hard cases: each prints what it measured as lines `hard: case | quantity | measured | allowed`
+byssus_test(hard/test_static base tled)
+byssus_test(hard/test_motion base tled)

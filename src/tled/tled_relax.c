@@ -25,6 +25,8 @@
 #define CALM 6.0          /* over omega: steps through which all is below the tolerance at the end. What a stiffer mode hid has come
                              out by then: it has fallen by e^6                                                                     */
 #define STUCK 60.0        /* over omega: steps without a better state, after which damping is kinetic                              */
+#define RISE 4.0          /* over the lowest omega^2 of late: what damping follows of a larger one                                 */
+#define HIGH 3.0          /* of Rayleigh's quotient, whose limit of stability is 4: the highest modes grow                         */
 #define LOWEST 1e-14      /* omega^2, of a motion without stiffness                                                                */
 
 typedef struct {
@@ -33,6 +35,7 @@ typedef struct {
   PetscReal *external, *held, *offset; /* external forces; supports' displacement, and how far u was from it at the start */
   PetscReal *start, *mode;             /* u at the start; highest mode                                                 */
   PetscReal *mass;                     /* fictitious, n_nodes                                                          */
+  PetscReal *share;                    /* n_tets, see ShareBulk(); NULL where volumes are not averaged                 */
   PetscReal  from, to;                 /* time of the start and the end [s]                                            */
   PetscReal  stretch[2];               /* smallest det F and largest |F|^2 when the masses were made                   */
   PetscReal  residual;                 /* |r| over the forces it is made of                                            */
@@ -45,8 +48,58 @@ typedef struct {
   PetscBool  by_peaks;                 /* kinetic damping                                                              */
 } Relax;
 
-/* Fictitious masses at u: for each node the sum over its elements of sum_b |K_ab|, Frobenius norms, which bounds M^-1 K by one in every
-   mode (block Gershgorin); then a common factor that makes the bound sharp. */
+/* Where volumes are averaged, a stiff material resists the volume changes of its neighbours too. share[e]: how much larger than its own
+   first Lame constant the mean over an element's nodes of their elements' is [Pa]. Such a body is not stiffer than one of plain elements
+   with these constants, by Jensen's inequality twice (the elements' J are averages of nodal ones, which are averages). */
+static PetscErrorCode ShareBulk(TLED tled, PetscReal share[])
+{
+  const TLEDBlocks *b     = &tled->blocks;
+  const PetscInt    n     = tled->mesh.n_corners;
+  PetscReal        *nodal = tled->trial; /* not in use here */
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(nodal, tled->mesh.n_nodes));
+  for (int l = 0; l < TLED_LANES * b->n_packs; l++)
+    for (PetscInt i = 0; i < n && b->element[l] >= 0; i++)
+      nodal[tled->mesh.tets[n * b->element[l] + i]] += b->V0[l] * TLEDLambda(&tled->laws[b->material[l / TLED_LANES]]);
+  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) nodal[a] *= tled->loops.weight[a];
+  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
+    PetscReal mean = 0.0;
+    if (b->element[l] < 0) continue;
+    for (PetscInt i = 0; i < n; i++) mean += nodal[tled->mesh.tets[n * b->element[l] + i]] / (PetscReal)n;
+    share[b->element[l]] = PetscMax(0.0, mean - TLEDLambda(&tled->laws[b->material[l / TLED_LANES]]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* add `bulk` y y^T, y_a = B G_a, to the stiffness of an element of one integration point */
+static void AddBulk(TLED tled, int lane, PetscReal bulk, const PetscReal u[], double K[])
+{
+  const int n = tled->loops.ops->n_corners;
+  TLEDPoint p;
+  double    B[9], y[3 * TLED_CORNERS_MAX];
+
+  TLEDPointAt_Private(&tled->loops, tled->mesh.tets, lane, 0, u, &p);
+  TLEDBulkDirection(p.law, p.seen, B);
+  for (int a = 0; a < n; a++) Mul3(B, &p.G[3 * a], &y[3 * a]);
+  for (int i = 0; i < 3 * n; i++)
+    for (int j = 0; j < 3 * n; j++) K[3 * n * i + j] += bulk * p.V0 * y[i] * y[j];
+}
+
+/* sum_b |K_ab| of an element's nodes, Frobenius norms */
+static void AddRows(PetscInt n, const double K[], const PetscInt node[], PetscReal sum[])
+{
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = 0; j < n; j++) {
+      PetscReal square = 0.0;
+      for (PetscInt k = 0; k < 9; k++) square += PetscSqr(K[3 * n * (3 * i + k / 3) + 3 * j + k % 3]);
+      sum[node[i]] += PetscSqrtReal(square);
+    }
+  }
+}
+
+/* Fictitious masses at u: for each node the sum over its elements of sum_b |K_ab|, which bounds M^-1 K by one in every mode (block
+   Gershgorin); then a common factor that makes the bound sharp. */
 static PetscErrorCode MakeMasses(TLED tled, Relax *x, PetscInt n_steps)
 {
   const TLEDBlocks *b = &tled->blocks;
@@ -61,17 +114,11 @@ static PetscErrorCode MakeMasses(TLED tled, Relax *x, PetscInt n_steps)
     TLEDNodalVolumes_OpenMP(&tled->loops, x->u);
   }
   for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
-    if (b->element[l] < 0) continue;
+    const int e = b->element[l];
+    if (e < 0) continue;
     TLEDStiffnessAt_Private(tled, l, x->u, K);
-    for (PetscInt i = 0; i < n; i++) {
-      PetscReal row = 0.0;
-      for (PetscInt j = 0; j < n; j++) {
-        PetscReal square = 0.0;
-        for (PetscInt k = 0; k < 9; k++) square += PetscSqr(K[3 * n * (3 * i + k / 3) + 3 * j + k % 3]);
-        row += PetscSqrtReal(square);
-      }
-      x->mass[tled->mesh.tets[n * b->element[l] + i]] += row;
-    }
+    if (x->share && x->share[e] > 0.0) AddBulk(tled, l, x->share[e], x->u, K);
+    AddRows(n, K, &tled->mesh.tets[n * e], x->mass);
   }
   ByCall(TLEDHighestMode_Private(tled, x->mass, x->u, n_steps, x->mode, &top));
   for (PetscInt a = 0; a < tled->mesh.n_nodes && top > 0.0; a++) x->mass[a] *= top / (4.0 * SAFETY * SAFETY);
@@ -88,7 +135,8 @@ static PetscErrorCode LookAtMasses(TLED tled, Relax *x)
 
   PetscFunctionBegin;
   PetscCall(TLEDStrain_Private(tled, x->u, NULL, NULL, stretch));
-  if (x->quotient > 3.0 || Changed(stretch[0], x->stretch[0]) || Changed(stretch[1], x->stretch[1]))
+  if (x->quotient > HIGH) PetscCall(PetscArraycpy(x->mode, x->v, 3 * tled->mesh.n_nodes)); /* it is the mode to begin with */
+  if (x->quotient > HIGH || Changed(stretch[0], x->stretch[0]) || Changed(stretch[1], x->stretch[1]))
     ByCall(MakeMasses(tled, x, FOLLOWING_STEPS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,10 +207,13 @@ static void Move(TLED tled, Relax *x, PetscReal c)
   }
 }
 
-/* 2 omega; none when damping is kinetic, which stops the body at each peak of its energy instead */
-static PetscReal Damping(TLED tled, Relax *x, PetscReal kinetic_before)
+/* 2 omega, near the lowest of late: near the end round-off makes the last quotient large; none when damping is kinetic, which stops the
+   body at each peak of its energy instead */
+static PetscReal Damping(TLED tled, Relax *x, PetscBool ramp, PetscReal kinetic_before)
 {
-  if (!x->by_peaks) return 2.0 * PetscSqrtReal(PetscMin(x->quotient > 0.0 ? x->quotient : x->omega2, 0.9));
+  const PetscReal most = ramp ? 1.0 : RISE * x->omega2;
+
+  if (!x->by_peaks) return 2.0 * PetscSqrtReal(PetscMin(0.9, PetscMax(x->omega2, PetscMin(x->quotient, most))));
   for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes && x->kinetic < kinetic_before; k++) x->v[k] = 0.0;
   return 0.0;
 }
@@ -201,7 +252,7 @@ static PetscErrorCode Try(TLED tled, Relax *x, PetscInt n_ramp, PetscReal tolera
       *at_rest = PETSC_TRUE;
       break;
     }
-    Move(tled, x, Damping(tled, x, kinetic));
+    Move(tled, x, Damping(tled, x, (PetscBool)(n <= n_ramp), kinetic));
     kinetic = x->kinetic;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -304,6 +355,10 @@ PetscErrorCode TLEDRelax(TLED tled, PetscReal time, PetscReal tolerance, PetscIn
   PetscCall(PetscMalloc6(n, &x.v, n, &x.r, n, &x.last, n, &x.pull, n, &x.external, n / 3, &x.mass));
   PetscCall(PetscMalloc4(n, &x.held, n, &x.offset, n, &x.start, n, &x.mode));
   PetscCall(PetscArrayzero(x.mode, n));
+  if (tled->loops.ops->averaged) {
+    PetscCall(PetscMalloc1(tled->mesh.n_tets, &x.share));
+    PetscCall(ShareBulk(tled, x.share));
+  }
   x.from = tled->state.time, x.to = time;
   PetscCall(VecGetArray(tled->u, &x.u));
   TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, PETSC_MAX_REAL); /* at rest, everything has relaxed */
@@ -316,6 +371,7 @@ PetscErrorCode TLEDRelax(TLED tled, PetscReal time, PetscReal tolerance, PetscIn
   tled->state.is_static = 1.0;
   tled->state.critical  = 0.0;
   PetscCall(PetscFree6(x.v, x.r, x.last, x.pull, x.external, x.mass));
+  PetscCall(PetscFree(x.share));
   PetscCall(PetscFree4(x.held, x.offset, x.start, x.mode));
   if (steps) *steps = taken;
   if (residual) *residual = x.residual;

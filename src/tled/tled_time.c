@@ -2,7 +2,9 @@
 #include "tled/tled_contact.h"
 #include "tled/tled_impl.h"
 
-#define RENEW_STEPS 64     /* substeps between two looks at the deformation                                        */
+#define RENEW_STEPS 64     /* substeps between two looks at the deformation at most                                */
+#define LOOK_FIRST 8       /* substeps before the first                                                             */
+#define LOOK_STRETCH 0.02  /* relative change of those below between two looks: the critical step goes with their square or so */
 #define RENEW_STRETCH 0.05 /* relative change of the smallest det F or largest |F|^2 that asks for a new critical step */
 #define RENEW_LATEST 1024  /* substeps after which it is renewed anyway                                             */
 #define FIRST_STEPS 100    /* iterations of the first critical step                                                 */
@@ -44,33 +46,38 @@ static PetscInt CountSubsteps(TLED tled, PetscReal dt)
   return PetscMax(1, (PetscInt)PetscCeilReal(dt / LargestStep(tled) * (1.0 - 1e-12)));
 }
 
-static PetscBool Changed(PetscReal now, PetscReal then)
+/* how much the larger of the two stretches has changed, relative */
+static PetscReal Change(const PetscReal now[2], const PetscReal then[2])
 {
-  return PetscAbsReal(now - then) > RENEW_STRETCH * then ? PETSC_TRUE : PETSC_FALSE;
+  return PetscMax(PetscAbsReal(now[0] - then[0]) / PetscAbsReal(then[0]), PetscAbsReal(now[1] - then[1]) / then[1]);
 }
 
 /* Know the critical step at u: computed when it is not known, after RENEW_LATEST substeps, and when the body has deformed since. It
-   depends on the state alone. */
+   is looked at so often that the body deforms by less than LOOK_STRETCH between two looks, as fast as it did up to now. It depends on
+   the state alone. */
 static PetscErrorCode RenewCritical(TLED tled, const PetscReal u[], PetscReal time)
 {
-  TLEDState     *s = &tled->state;
-  PetscReal      stretch[2];
+  TLEDState     *s     = &tled->state;
+  PetscReal      steps = LOOK_FIRST, change = 0.0, stretch[2];
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
   if (tled->contact.n && !(tled->contact.rate > 0.0)) tled->contact.rate = TLEDContactRate_Private(tled, tled->mass);
   if (s->critical > 0.0 && s->since < s->look) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TLEDStrain_Private(tled, u, NULL, NULL, stretch));
-  s->look = s->since + RENEW_STEPS;
-  if (s->critical > 0.0 && s->since < RENEW_LATEST && !Changed(stretch[0], s->stretch[0]) && !Changed(stretch[1], s->stretch[1]))
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->critical > 0.0) {
+    change = Change(stretch, s->stretch);
+    steps  = PetscMax(1.0, PetscMin(RENEW_STEPS, PetscFloorReal(LOOK_STRETCH / PetscMax(change / s->since, 1e-300))));
+  }
+  s->look = s->since + steps;
+  if (s->critical > 0.0 && s->since < RENEW_LATEST && change <= RENEW_STRETCH) PetscFunctionReturn(PETSC_SUCCESS);
   TLEDSetViscous_Private(tled, TLED_VISCOUS_INSTANT, 0.0);
   ierr = TLEDCriticalStep_Private(tled, u, s->critical > 0.0 ? FOLLOWING_STEPS : FIRST_STEPS, &s->critical);
   TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, 0.0);
   if (ierr == BY_ERR_BREAKDOWN) PetscFunctionReturn(TLEDReportBroken_Private(tled, u, time));
   PetscCall(ierr);
   s->stretch[0] = stretch[0], s->stretch[1] = stretch[1];
-  s->since = 0.0, s->look = RENEW_STEPS;
+  s->since = 0.0, s->look = steps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,7 +269,7 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
       left = CountSubsteps(tled, dt - passed);
       h    = (dt - passed) / (PetscReal)left;
     }
-    const PetscInt m    = PetscMin(left, RENEW_STEPS);
+    const PetscInt m    = PetscMin(left, PetscMax(1, (PetscInt)(tled->state.look - tled->state.since)));
     w->step.dt          = h;
     w->start = start + passed, w->end = start + dt, w->left = left;
     TLEDSetViscous_Private(tled, TLED_VISCOUS_COMMIT, h);
