@@ -80,7 +80,7 @@ static void AddBulk(TLED tled, int lane, PetscReal bulk, const PetscReal u[], do
   double    B[9], y[3 * TLED_CORNERS_MAX];
 
   TLEDPointAt_Private(&tled->loops, tled->mesh.tets, lane, 0, u, &p);
-  TLEDBulkDirection(p.law, p.seen, B);
+  TLEDBulkDirection(p.law.law, p.seen, B);
   for (int a = 0; a < n; a++) Mul3(B, &p.G[3 * a], &y[3 * a]);
   for (int i = 0; i < 3 * n; i++)
     for (int j = 0; j < 3 * n; j++) K[3 * n * i + j] += bulk * p.V0 * y[i] * y[j];

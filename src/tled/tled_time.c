@@ -4,8 +4,8 @@
 
 #define RENEW_STEPS 64     /* substeps between two looks at the deformation at most                                */
 #define LOOK_FIRST 8       /* substeps before the first                                                             */
-#define LOOK_STRETCH 0.02  /* relative change of those below between two looks: the critical step goes with their square or so */
-#define RENEW_STRETCH 0.05 /* relative change of the smallest det F or largest |F|^2 that asks for a new critical step */
+#define LOOK_STRETCH 0.01  /* relative change of those below between two looks: the critical step goes with their square or so */
+#define RENEW_STRETCH 0.03 /* relative change of the smallest det F or largest |F|^2 that asks for a new critical step */
 #define RENEW_LATEST 1024  /* substeps after which it is renewed anyway                                             */
 #define FIRST_STEPS 100    /* iterations of the first critical step                                                 */
 #define FOLLOWING_STEPS 12 /* of the following ones, which start from the last mode                                 */

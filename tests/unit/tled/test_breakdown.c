@@ -150,7 +150,7 @@ static void StepLimit_EndsTheRun(void **state)
   assert_true(t > 0.05 && t < 0.45);
   p->step_limit = 0.0;
   assert_petsc(TLEDGetCriticalStep(tled, &critical));
-  assert_true(critical < 0.81 * before && critical > 0.75 * before);
+  assert_true(critical < 0.81 * before && critical > 0.76 * before);
   assert_petsc(TLEDDestroy(&tled));
 }
 
