@@ -5,22 +5,13 @@
 
 /* values of a pack of elements; H to ln_J are those of one integration point */
 typedef struct {
-  double d[27][L]; /* u_a - u_0 of the nodes a = 1 ... 9, row 3 (a - 1) + i */
-  double f[30][L]; /* forces, row 3 a + i                                   */
+  double d[27][L];                 /* u_a - u_0 of the nodes a = 1 ... 9, row 3 (a - 1) + i       */
+  double f[30][L];                 /* forces, row 3 a + i                                         */
+  double T[TLED_T10_POINTS][9][L]; /* of a point the slopes of the displacements, then w P Jinv^T */
   double H[9][L], jm1[L], ln_J[L];
 } __attribute__((aligned(64))) Pack;
 
-/* barycentric coordinates of the integration points */
-typedef struct {
-  double L4[TLED_T10_POINTS_FINE][4];
-} Points;
-
-static void SetPoints(int n_points, Points *points)
-{
-  for (int q = 0; q < n_points; q++) (void)TLEDQuadratureT10(n_points, q, points->L4[q]);
-}
-
-/* u_a - u_0 of each lane, and no forces yet */
+/* u_a - u_0 of each lane */
 static void LoadPack(const int local[], const Scratch *s, Pack *p)
 {
   for (int l = 0; l < L; l += 4) {
@@ -31,8 +22,6 @@ static void LoadPack(const int local[], const Scratch *s, Pack *p)
                   &p->d[3 * a - 2][l], &p->d[3 * a - 1][l]);
     }
   }
-  for (int k = 0; k < 30; k++)
-    for (int l = 0; l < L; l++) p->f[k][l] = 0.0;
 }
 
 /* nine numbers of a lane */
@@ -41,17 +30,87 @@ INLINE void LaneMatrix(const double from[], int l, double to[9])
   for (int k = 0; k < 9; k++) to[k] = from[k * L + l];
 }
 
-/* displacement gradient and J - 1 of each lane at an integration point; returns how many lanes are broken */
-INLINE int PointGradients(const double L4[4], const double Jinv[], Pack *p)
+/* one component of u_a - u_0 of a lane */
+INLINE void LaneComponent(const Pack *p, int i, int l, double u[10])
+{
+  u[0] = 0.0;
+  for (int a = 1; a < 10; a++) u[a] = p->d[3 * (a - 1) + i][l];
+}
+
+/* slopes of the displacements at the four points */
+INLINE void SlopesFour(Pack *p)
+{
+  for (int i = 0; i < 3; i++) {
+#pragma GCC ivdep
+    for (int l = 0; l < L; l++) {
+      double u[10], slope[12];
+      LaneComponent(p, i, l, u);
+      TLEDSlopesFourT10(u, slope);
+      for (int k = 0; k < 3; k++) {
+        p->T[0][3 * i + k][l] = slope[k];
+        p->T[1][3 * i + k][l] = slope[3 + k];
+        p->T[2][3 * i + k][l] = slope[6 + k];
+        p->T[3][3 * i + k][l] = slope[9 + k];
+      }
+    }
+  }
+}
+
+/* forces of the four points on the nodes */
+INLINE void ForcesFour(Pack *p)
+{
+  for (int i = 0; i < 3; i++) {
+#pragma GCC ivdep
+    for (int l = 0; l < L; l++) {
+      double T[12], f[10];
+      for (int k = 0; k < 3; k++) {
+        T[k]     = p->T[0][3 * i + k][l];
+        T[3 + k] = p->T[1][3 * i + k][l];
+        T[6 + k] = p->T[2][3 * i + k][l];
+        T[9 + k] = p->T[3][3 * i + k][l];
+      }
+      TLEDForcesFourT10(T, f);
+      for (int a = 0; a < 10; a++) p->f[3 * a + i][l] = f[a];
+    }
+  }
+}
+
+/* slopes of the displacements at one point of another rule */
+INLINE void SlopesAt(const double L4[4], double T[9][L], const Pack *p)
+{
+  for (int i = 0; i < 3; i++) {
+#pragma GCC ivdep
+    for (int l = 0; l < L; l++) {
+      double u[10], slope[3];
+      LaneComponent(p, i, l, u);
+      TLEDSlopesT10(L4, u, slope);
+      for (int k = 0; k < 3; k++) T[3 * i + k][l] = slope[k];
+    }
+  }
+}
+
+/* add the forces of that point on the nodes; the first one writes them */
+INLINE void ForcesAt(const double L4[4], int first, double T[9][L], Pack *p)
+{
+  for (int i = 0; i < 3; i++) {
+#pragma GCC ivdep
+    for (int l = 0; l < L; l++) {
+      const double t[3] = {T[3 * i][l], T[3 * i + 1][l], T[3 * i + 2][l]};
+      double       f[10];
+      for (int a = 0; a < 10; a++) f[a] = first ? 0.0 : p->f[3 * a + i][l];
+      TLEDAddForcesT10(L4, t, f);
+      for (int a = 0; a < 10; a++) p->f[3 * a + i][l] = f[a];
+    }
+  }
+}
+
+/* displacement gradient and J - 1 of each lane at an integration point from its slopes; returns how many lanes are broken */
+INLINE int PointGradients(const double Jinv[], double T[9][L], Pack *p)
 {
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
     double slope[9], M[9], H[9];
-    for (int i = 0; i < 3; i++) {
-      const double u[10] = {0.0,            p->d[i][l],      p->d[3 + i][l],  p->d[6 + i][l],  p->d[9 + i][l],
-                            p->d[12 + i][l], p->d[15 + i][l], p->d[18 + i][l], p->d[21 + i][l], p->d[24 + i][l]};
-      TLEDSlopesT10(L4, u, &slope[3 * i]);
-    }
+    LaneMatrix(T[0], l, slope);
     LaneMatrix(Jinv, l, M);
     TLEDPushForwardT10(slope, M, H);
     p->jm1[l] = TLEDJacobianMinusOne(H);
@@ -60,23 +119,18 @@ INLINE int PointGradients(const double L4[4], const double Jinv[], Pack *p)
   return CountBroken(p->jm1);
 }
 
-/* add the forces of the stress at an integration point of one lane */
-INLINE void AddPoint(const double P[9], const double L4[4], const double Jinv[], const double V0[], int l, Pack *p)
+/* w P Jinv^T of one lane at an integration point */
+INLINE void StorePoint(const double P[9], const double Jinv[], const double V0[], int l, double T[9][L])
 {
-  double M[9], T[9];
+  double M[9], t[9];
 
   LaneMatrix(Jinv, l, M);
-  TLEDPullBackT10(P, M, V0[l], T);
-  for (int i = 0; i < 3; i++) {
-    double f[10];
-    for (int b = 0; b < 10; b++) f[b] = p->f[3 * b + i][l];
-    TLEDAddForcesT10(L4, &T[3 * i], f);
-    for (int b = 0; b < 10; b++) p->f[3 * b + i][l] = f[b];
-  }
+  TLEDPullBackT10(P, M, V0[l], t);
+  for (int k = 0; k < 9; k++) T[k][l] = t[k];
 }
 
-/* add the forces of an integration point of each lane */
-INLINE void PointForces(const TLEDLaw *m, const double L4[4], const double Jinv[], const double V0[], const double fibre[], Pack *p)
+/* the stress of an integration point of each lane */
+INLINE void PointStress(const TLEDLaw *m, const double Jinv[], const double V0[], const double fibre[], const Pack *p, double T[9][L])
 {
 #pragma GCC ivdep
   for (int l = 0; l < L; l++) {
@@ -84,31 +138,40 @@ INLINE void PointForces(const TLEDLaw *m, const double L4[4], const double Jinv[
     LaneMatrix(p->H[0], l, H);
     LaneFibre(fibre, l, a);
     TLEDStress(m, a, H, p->ln_J[l], 1.0 / (1.0 + p->jm1[l]), P);
-    AddPoint(P, L4, Jinv, V0, l, p);
+    StorePoint(P, Jinv, V0, l, T);
   }
 }
 
 /* forces of a pack at all integration points, for one law known to the compiler; returns how many points are broken */
-INLINE int PackForces(int law, const TLEDLaw *material, const TLEDBlocks *b, int pack, const Points *points, Pack *p)
+INLINE int PackForces(int law, const TLEDLaw *material, const TLEDBlocks *b, int pack, Pack *p)
 {
   const double *fibre  = b->fibre && law == TLED_LAW_TRANSVERSE ? b->fibre + 3 * L * pack : NULL;
   const TLEDLaw m      = KnownLaw(law, material);
+  const int     four   = b->n_points == TLED_T10_POINTS;
   int           broken = 0;
 
+  if (four) SlopesFour(p);
   for (int q = 0; q < b->n_points; q++) {
     const int     place = (b->n_points * pack + q) * L;
-    const double *Jinv = b->G + 9 * place, *V0 = b->V0 + place;
-    broken += PointGradients(points->L4[q], Jinv, p);
+    const double *Jinv  = b->G + 9 * place, *V0 = b->V0 + place;
+    double(*T)[L]      = p->T[four ? q : 0], L4[4];
+    if (!four) {
+      (void)TLEDQuadratureT10(b->n_points, q, L4);
+      SlopesAt(L4, T, p);
+    }
+    broken += PointGradients(Jinv, T, p);
     if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(p->jm1, p->ln_J);
-    PointForces(&m, points->L4[q], Jinv, V0, fibre, p);
+    PointStress(&m, Jinv, V0, fibre, p, T);
+    if (!four) ForcesAt(L4, q == 0, T, p);
   }
+  if (four) ForcesFour(p);
   return broken;
 }
 
-#define FORCES_OF(Law, number)                                                                                    \
-  KERNEL int Forces##Law(const TLEDLaw *m, const TLEDBlocks *b, int pack, const Points *points, Pack *p)          \
-  {                                                                                                               \
-    return PackForces(number, m, b, pack, points, p);                                                             \
+#define FORCES_OF(Law, number)                                                             \
+  KERNEL int Forces##Law(const TLEDLaw *m, const TLEDBlocks *b, int pack, Pack *p)         \
+  {                                                                                        \
+    return PackForces(number, m, b, pack, p);                                              \
   }
 FORCES_OF(NeoHookean, TLED_LAW_NEO_HOOKEAN)
 FORCES_OF(StVenantKirchhoff, TLED_LAW_ST_VENANT_KIRCHHOFF)
@@ -117,40 +180,49 @@ FORCES_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
 FORCES_OF(Transverse, TLED_LAW_TRANSVERSE)
 
 /* the same of a pack whose material has a Prony series */
-KERNEL int ForcesViscous(const TLEDLoops *w, int pack, const Points *points, Pack *p)
+KERNEL int ForcesViscous(const TLEDLoops *w, int pack, Pack *p)
 {
-  const TLEDBlocks *b = w->blocks;
+  const TLEDBlocks *b    = w->blocks;
+  const int         four = b->n_points == TLED_T10_POINTS;
   double            P_of[9][L] __attribute__((aligned(64)));
   int               broken = 0;
 
+  if (four) SlopesFour(p);
   for (int q = 0; q < b->n_points; q++) {
     const int     place = (b->n_points * pack + q) * L;
-    const double *Jinv = b->G + 9 * place, *V0 = b->V0 + place;
-    broken += PointGradients(points->L4[q], Jinv, p);
+    const double *Jinv  = b->G + 9 * place, *V0 = b->V0 + place;
+    double(*T)[L]      = p->T[four ? q : 0], L4[4];
+    if (!four) {
+      (void)TLEDQuadratureT10(b->n_points, q, L4);
+      SlopesAt(L4, T, p);
+    }
+    broken += PointGradients(Jinv, T, p);
     TLEDViscousStress_OpenMP(w, pack, q, 1, p->H, P_of);
 #pragma GCC ivdep
     for (int l = 0; l < L; l++) {
       double P[9];
       LaneMatrix(P_of[0], l, P);
-      AddPoint(P, points->L4[q], Jinv, V0, l, p);
+      StorePoint(P, Jinv, V0, l, T);
     }
+    if (!four) ForcesAt(L4, q == 0, T, p);
   }
+  if (four) ForcesFour(p);
   return broken;
 }
 
 /* the same by the material of the pack */
-static int PackForcesLaw(const TLEDLoops *w, int pack, const Points *points, Pack *p)
+static int PackForcesLaw(const TLEDLoops *w, int pack, Pack *p)
 {
   const TLEDBlocks *b = w->blocks;
   const TLEDLaw    *m = &w->laws[b->material[pack]];
 
-  if (m->n_prony) return ForcesViscous(w, pack, points, p);
+  if (m->n_prony) return ForcesViscous(w, pack, p);
   switch (m->law) {
-  case TLED_LAW_NEO_HOOKEAN: return ForcesNeoHookean(m, b, pack, points, p);
-  case TLED_LAW_ST_VENANT_KIRCHHOFF: return ForcesStVenantKirchhoff(m, b, pack, points, p);
-  case TLED_LAW_NEO_HOOKEAN_ISO: return ForcesNeoHookeanIso(m, b, pack, points, p);
-  case TLED_LAW_MOONEY_RIVLIN: return ForcesMooneyRivlin(m, b, pack, points, p);
-  default: return ForcesTransverse(m, b, pack, points, p);
+  case TLED_LAW_NEO_HOOKEAN: return ForcesNeoHookean(m, b, pack, p);
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: return ForcesStVenantKirchhoff(m, b, pack, p);
+  case TLED_LAW_NEO_HOOKEAN_ISO: return ForcesNeoHookeanIso(m, b, pack, p);
+  case TLED_LAW_MOONEY_RIVLIN: return ForcesMooneyRivlin(m, b, pack, p);
+  default: return ForcesTransverse(m, b, pack, p);
   }
 }
 
@@ -169,9 +241,7 @@ static void AddForces(const int local[], Pack *p, Scratch *s)
 void TLEDForcesT10_OpenMP(const TLEDLoops *w, const double u[])
 {
   const TLEDBlocks *b = w->blocks;
-  Points            points;
 
-  SetPoints(b->n_points, &points);
 #pragma omp for schedule(static)
   for (int block = 0; block < b->n_blocks; block++) {
     Scratch s;
@@ -182,7 +252,7 @@ void TLEDForcesT10_OpenMP(const TLEDLoops *w, const double u[])
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
       const int *local = b->local + 10 * L * pack;
       LoadPack(local, &s, &p);
-      broken += PackForcesLaw(w, pack, &points, &p);
+      broken += PackForcesLaw(w, pack, &p);
       AddForces(local, &p, &s);
     }
     StoreBlock(b, block, &s, w->partial);

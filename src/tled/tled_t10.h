@@ -12,6 +12,9 @@
 /* points of the two quadrature rules: exact to degree 2, and to degree 5 */
 enum { TLED_T10_POINTS = 4, TLED_T10_POINTS_FINE = 14 };
 
+/* smaller barycentric coordinate of the four points, (5 - sqrt 5)/20 */
+#define TLED_T10_NEAR 0.1381966011250105152
+
 /* The vertices of edge e = 0 ... 5, whose node is 4 + e. */
 BY_HD void TLEDEdgeT10(int e, int *v, int *w)
 {
@@ -25,10 +28,10 @@ BY_HD void TLEDEdgeT10(int e, int *v, int *w)
    [Walkington, Quadrature on simplices of arbitrary dimension, 2000; Keast, CMAME 55 (1986) 339]. */
 BY_HD double TLEDQuadratureT10(int n_points, int q, double L[4])
 {
-  const double c4 = 0.1381966011250105152, c14[3] = {0.3108859192633006098, 0.0927352503108912264, 0.0455037041256496495};
+  const double c14[3] = {0.3108859192633006098, 0.0927352503108912264, 0.0455037041256496495};
   const double w14[3] = {0.1126879257180158508, 0.0734930431163619495, 0.0425460207770814664};
   const int    kind = q < 4 ? 0 : q < 8 ? 1 : 2;
-  const double c = n_points == TLED_T10_POINTS ? c4 : c14[kind];
+  const double c = n_points == TLED_T10_POINTS ? TLED_T10_NEAR : c14[kind];
   int          v, w;
 
   L[0] = L[1] = L[2] = L[3] = c;
@@ -66,6 +69,20 @@ BY_HD void TLEDSlopesT10(const double L[4], const double u[10], double slope[3])
   slope[2] = D3 - D0;
 }
 
+/* The same at the four points of the rule of degree 2 at once, slope[3 q + k]. With L_w(q) = c + (1 - 4c) [w = q] and u_vv = u_v the
+   derivatives are D_v(q) = (4c - 1) u_v + 4c sum_{w != v} u_vw + 4 (1 - 4c) u_vq: the part of all points is worked out once. */
+BY_HD void TLEDSlopesFourT10(const double u[10], double slope[12])
+{
+  const double c = 4.0*TLED_T10_NEAR, e = 4.0*(1.0 - c);
+  const double B0 = (c - 1.0)*u[0] + c*(u[4] + u[6] + u[7]), B1 = (c - 1.0)*u[1] + c*(u[4] + u[5] + u[8]);
+  const double B2 = (c - 1.0)*u[2] + c*(u[6] + u[5] + u[9]), B3 = (c - 1.0)*u[3] + c*(u[7] + u[8] + u[9]);
+
+  slope[0] = (B1 - B0) + e*(u[4] - u[0]); slope[1]  = (B2 - B0) + e*(u[6] - u[0]); slope[2]  = (B3 - B0) + e*(u[7] - u[0]);
+  slope[3] = (B1 - B0) + e*(u[1] - u[4]); slope[4]  = (B2 - B0) + e*(u[5] - u[4]); slope[5]  = (B3 - B0) + e*(u[8] - u[4]);
+  slope[6] = (B1 - B0) + e*(u[5] - u[6]); slope[7]  = (B2 - B0) + e*(u[2] - u[6]); slope[8]  = (B3 - B0) + e*(u[9] - u[6]);
+  slope[9] = (B1 - B0) + e*(u[8] - u[7]); slope[10] = (B2 - B0) + e*(u[9] - u[7]); slope[11] = (B3 - B0) + e*(u[3] - u[7]);
+}
+
 /* The transpose: f_a += sum_k T_k dN_a/dxi_k, a row T of w P Jinv^T (see TLEDPullBackT10()) to one component of the nodal forces. */
 BY_HD void TLEDAddForcesT10(const double L[4], const double T[3], double f[10])
 {
@@ -81,6 +98,26 @@ BY_HD void TLEDAddForcesT10(const double L[4], const double T[3], double f[10])
   f[7] += 4.0*(L[3]*T0 + L[0]*T[2]);
   f[8] += 4.0*(L[3]*T[0] + L[1]*T[2]);
   f[9] += 4.0*(L[3]*T[1] + L[2]*T[2]);
+}
+
+/* The same for the four points at once, the transpose of TLEDSlopesFourT10(): T[3 q + k] of one component, f is written. */
+BY_HD void TLEDForcesFourT10(const double T[12], double f[10])
+{
+  const double c = 4.0*TLED_T10_NEAR, e = 4.0*(1.0 - c);
+  const double T00 = T[0] + T[1] + T[2], T10 = T[3] + T[4] + T[5], T20 = T[6] + T[7] + T[8], T30 = T[9] + T[10] + T[11];
+  const double S0 = -((T00 + T10) + (T20 + T30)), S1 = (T[0] + T[3]) + (T[6] + T[9]), S2 = (T[1] + T[4]) + (T[7] + T[10]);
+  const double S3 = (T[2] + T[5]) + (T[8] + T[11]);
+
+  f[0] = (c - 1.0)*S0 - e*T00;
+  f[1] = (c - 1.0)*S1 + e*T[3];
+  f[2] = (c - 1.0)*S2 + e*T[7];
+  f[3] = (c - 1.0)*S3 + e*T[11];
+  f[4] = c*(S0 + S1) + e*(T[0] - T10);
+  f[5] = c*(S1 + S2) + e*(T[6] + T[4]);
+  f[6] = c*(S0 + S2) + e*(T[1] - T20);
+  f[7] = c*(S0 + S3) + e*(T[2] - T30);
+  f[8] = c*(S1 + S3) + e*(T[9] + T[5]);
+  f[9] = c*(S2 + S3) + e*(T[10] + T[8]);
 }
 
 /* dN_a/dX_j [1/m] of all nodes from Jinv = dxi/dX (3 x 3, row k): g is 10 x 3 */

@@ -116,6 +116,28 @@ static void Slopes_AreTheDerivativesOfTheShapeFunctions(void **state)
   }
 }
 
+/* the four points at once are the four one by one, and their transposes too */
+static void FourPointsAtOnce_AreTheSame(void **state)
+{
+  unsigned seed = 6;
+
+  (void)state;
+  for (int t = 0; t < N_TRIALS; t++) {
+    double u[10], T[12], slope[12], f[10], one[3], sum[10] = {0.0}, L[4];
+    for (int a = 0; a < 10; a++) u[a] = Uniform(&seed, -1.0, 1.0);
+    for (int k = 0; k < 12; k++) T[k] = Uniform(&seed, -1.0, 1.0);
+    TLEDSlopesFourT10(u, slope);
+    TLEDForcesFourT10(T, f);
+    for (int q = 0; q < TLED_T10_POINTS; q++) {
+      (void)TLEDQuadratureT10(TLED_T10_POINTS, q, L);
+      TLEDSlopesT10(L, u, one);
+      for (int k = 0; k < 3; k++) assert_close(slope[3 * q + k], one[k], 1e-14, 10.0);
+      TLEDAddForcesT10(L, &T[3 * q], sum);
+    }
+    for (int a = 0; a < 10; a++) assert_close(f[a], sum[a], 1e-14, 10.0);
+  }
+}
+
 /* u = c + A X + X . B X: H of a straight element is its gradient, at every point */
 static void QuadraticField_IsReproduced(void **state)
 {
@@ -198,5 +220,6 @@ static void LumpedMass_IsPositiveAndWhole(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(Rules_IntegrateTheirDegreeExactly), cmocka_unit_test(ShapeFunctions_AreOneAtTheirNodeAndAddToOne),
-           cmocka_unit_test(Slopes_AreTheDerivativesOfTheShapeFunctions), cmocka_unit_test(QuadraticField_IsReproduced),
+           cmocka_unit_test(Slopes_AreTheDerivativesOfTheShapeFunctions), cmocka_unit_test(QuadraticField_IsReproduced), cmocka_unit_test(FourPointsAtOnce_AreTheSame),
+          
            cmocka_unit_test(ForcesFromSlopes_AreForcesFromGradients), cmocka_unit_test(LumpedMass_IsPositiveAndWhole))
