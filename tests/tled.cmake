@@ -2,6 +2,7 @@
 byssus_test(unit/tled/test_material)
 byssus_test(unit/tled/test_force base tled)
 byssus_test(unit/tled/test_prony base tled)
+byssus_test(unit/tled/test_materials base tled)
 byssus_test(unit/tled/test_static base tled)
 byssus_test(unit/tled/test_time base tled)
 byssus_test(unit/tled/test_critical base tled)

@@ -190,7 +190,7 @@ PetscErrorCode TLEDSetUp(TLED tled)
   ByCall(TLEDMaterialsSetUp_Private(tled));
   ByCall(TLEDElementPick_Private(tled));
   PetscCall(TLEDBlocksCreate_Private(&tled->mesh, tled->mesh.n_corners == 4 ? 1 : n_points[tled->params.quadrature], &tled->blocks));
-  PetscCall(TLEDFibresSetUp_Private(tled));
+  ByCall(TLEDFibresSetUp_Private(tled));
   PetscCall(TLEDViscousSetUp_Private(tled));
   PetscCall(PetscCalloc2(tled->mesh.n_nodes, &tled->motion, tled->mesh.n_nodes, &tled->constrained));
   ByCall(TLEDConstraintsSetUp_Private(tled));

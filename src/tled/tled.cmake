@@ -7,7 +7,7 @@ if(BYSSUS_HAVE_CUDA)
 endif()
 byssus_module(tled
   src/tled/tled.c src/tled/tled_keys.c src/tled/tled_gmsh.c src/tled/tled_mesh.c src/tled/tled_blocks.c
-  src/tled/tled_materials.c src/tled/tled_element.c src/tled/tled_openmp.c src/tled/tled_openmp_t10.c src/tled/tled_viscous.c
+  src/tled/tled_materials.c src/tled/tled_field.c src/tled/tled_element.c src/tled/tled_openmp.c src/tled/tled_openmp_t10.c src/tled/tled_viscous.c
   src/tled/tled_energy.c src/tled/tled_mass.c src/tled/tled_breakdown.c src/tled/tled_relax.c src/tled/tled_critical.c src/tled/tled_time.c src/tled/tled_assembly.c src/tled/tled_tangent.c src/tled/tled_state.c
   src/tled/tled_constraint.c src/tled/tled_load.c src/tled/tled_contact.c
   src/tled/tled_device.c ${TLED_DEVICE})

@@ -29,6 +29,7 @@ typedef struct {
   PetscReal c10, c01;                      /* of Mooney and Rivlin [Pa], in place of young                               */
   PetscReal fibre_stiffness;               /* eta [Pa] of a transversely isotropic material                              */
   PetscReal fibre[3];                      /* direction of its fibres, of any length                                     */
+  char      fibre_field[PETSC_MAX_PATH_LEN]; /* or the view on the mesh's elements that has their directions             */
   Reals     prony_alpha, prony_tau;        /* part of the isochoric stress that relaxes [1], in which time [s]           */
 } TLEDMaterialParams;
 

@@ -7,7 +7,7 @@
 #define THREADS 128 /* per block: enough to hide memory latency with the registers that a tetrahedron takes */
 
 static __global__ void ElementForces(const TLEDLaw *laws, const int *material, int n_lanes, const int *corner, const double *G,
-                                     const double *V0, const double *u, double *corner_force)
+                                     const double *V0, const double *fibre, const double *u, double *corner_force)
 {
   const int l = blockIdx.x*blockDim.x + threadIdx.x, pack = l / LANES, lane = l % LANES;
   int       n[4];
@@ -15,6 +15,7 @@ static __global__ void ElementForces(const TLEDLaw *laws, const int *material, i
 
   if (l >= n_lanes) return;
   for (int c = 0; c < 4; c++) n[c] = corner[(4*pack + c)*LANES + lane];
+  for (int k = 0; k < 3 && fibre; k++) a[k] = fibre[(3*pack + k)*LANES + lane];
   for (int k = 0; k < 9; k++) g[k] = G[(9*pack + k)*LANES + lane];
   for (int c = 0; c < 3; c++) Sub3(&u[3*n[c + 1]], &u[3*n[0]], &d[3*c]);
   TLEDDisplacementGradient(d, g, H);
@@ -37,9 +38,9 @@ static __global__ void GatherForces(int n_nodes, const int *offset, const int *l
 }
 
 extern "C" int TLEDElementForces_CUDA(const TLEDLaw laws[], const int material[], int n_lanes, const int corner[],
-                                      const double G[], const double V0[], const double u[], double corner_force[])
+                                      const double G[], const double V0[], const double fibre[], const double u[], double corner_force[])
 {
-  ElementForces<<<(n_lanes + THREADS - 1) / THREADS, THREADS>>>(laws, material, n_lanes, corner, G, V0, u, corner_force);
+  ElementForces<<<(n_lanes + THREADS - 1) / THREADS, THREADS>>>(laws, material, n_lanes, corner, G, V0, fibre, u, corner_force);
   return (int)cudaGetLastError();
 }
 

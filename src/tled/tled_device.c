@@ -4,11 +4,12 @@
 #include "array.h"
 
 struct _TLEDDevice {
-  int    n_lanes, n_nodes;
+  int    n_lanes, n_nodes, has_fibres;
   Array  laws;         /* TLEDLaw of each material                                  */
   Array  material;     /* int, n_packs                                              */
   Array  corner;       /* int, n_packs x 4 x TLED_LANES: node of each corner         */
   Array  G, V0;        /* double, as in TLEDBlocks                                   */
+  Array  fibre;        /* double, as in TLEDBlocks; none: has_fibres is 0            */
   Array  offset, list; /* int: the corners 4 lane + a of each node, ascending        */
   Array  corner_force; /* double, n_lanes x 12 [N]                                   */
   Array  u, f;         /* double, n_nodes x 3                                        */
@@ -74,6 +75,8 @@ PetscErrorCode TLEDDeviceCreate(TLED tled, TLEDDevice *device)
   PetscCall(FillArray(&d->laws, sizeof(TLEDLaw), (size_t)tled->loops.n_laws, tled->laws));
   PetscCall(FillArray(&d->material, sizeof(int), (size_t)b->n_packs, b->material));
   PetscCall(FillArray(&d->G, sizeof(double), 9 * (size_t)d->n_lanes, b->G));
+  d->has_fibres = b->fibre != NULL;
+  PetscCall(FillArray(&d->fibre, sizeof(double), 3 * (size_t)d->n_lanes, b->fibre));
   PetscCall(FillArray(&d->V0, sizeof(double), (size_t)d->n_lanes, b->V0));
   PetscCall(FillArray(&d->corner_force, sizeof(double), 12 * (size_t)d->n_lanes, NULL));
   PetscCall(FillArray(&d->u, sizeof(double), 3 * (size_t)d->n_nodes, NULL));
@@ -87,7 +90,7 @@ PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[]
 #if defined(BYSSUS_HAVE_CUDA)
   const TLEDLaw *laws;
   const int    *material, *corner, *offset, *list;
-  const double *G, *V0, *from;
+  const double *G, *V0, *from, *fibre = NULL;
   double       *to, *corner_force, *out;
   int           status;
 
@@ -101,10 +104,11 @@ PetscErrorCode TLEDDeviceForces(TLEDDevice d, const PetscReal u[], PetscReal f[]
   PetscCall(ArrayDeviceRead(&d->list, &list));
   PetscCall(ArrayDeviceRead(&d->G, &G));
   PetscCall(ArrayDeviceRead(&d->V0, &V0));
+  if (d->has_fibres) PetscCall(ArrayDeviceRead(&d->fibre, &fibre));
   PetscCall(ArrayDeviceRead(&d->u, &from));
   PetscCall(ArrayDeviceOverwrite(&d->corner_force, &corner_force));
   PetscCall(ArrayDeviceOverwrite(&d->f, &out));
-  status = TLEDElementForces_CUDA(laws, material, d->n_lanes, corner, G, V0, from, corner_force);
+  status = TLEDElementForces_CUDA(laws, material, d->n_lanes, corner, G, V0, fibre, from, corner_force);
   PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_GPU, "TLEDElementForces_CUDA failed with CUDA status %d", status);
   status = TLEDGatherForces_CUDA(d->n_nodes, offset, list, corner_force, out);
   PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_GPU, "TLEDGatherForces_CUDA failed with CUDA status %d", status);
@@ -131,6 +135,7 @@ PetscErrorCode TLEDDeviceDestroy(TLEDDevice *device)
   PetscCall(ArrayDestroy(&d->list));
   PetscCall(ArrayDestroy(&d->G));
   PetscCall(ArrayDestroy(&d->V0));
+  PetscCall(ArrayDestroy(&d->fibre));
   PetscCall(ArrayDestroy(&d->corner_force));
   PetscCall(ArrayDestroy(&d->u));
   PetscCall(ArrayDestroy(&d->f));

@@ -267,6 +267,8 @@ PetscErrorCode TLEDMeshNeedGroup_Private(const TLEDMesh *mesh, const char path[]
 /* tled_materials.c: laws of the materials, and mesh->material */
 PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled);
 PetscErrorCode TLEDFibresSetUp_Private(TLED tled); /* blocks.fibre */
+/* tled_field.c */
+PetscErrorCode TLEDFieldRead_Private(const char key[], const char path[], const char name[], const TLEDMesh *mesh, PetscReal value[]);
 /* tled_viscous.c: materials with a Prony series */
 PetscErrorCode TLEDViscousSetUp_Private(TLED tled);
 PetscErrorCode TLEDViscousDestroy_Private(TLED tled);

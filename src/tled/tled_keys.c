@@ -18,6 +18,7 @@ static const char *const rules[]     = {"4", "14", NULL}; /* in the order of TLE
   {"c01", KEY_REAL, offsetof(S, m c01), "Pa", NULL, -1e15, 1e15, 0, NULL, "second constant of mooney_rivlin; twice their sum is the shear modulus"}, \
   {"fibre_stiffness", KEY_REAL, offsetof(S, m fibre_stiffness), "Pa", NULL, 0, 1e15, KEY_LO_OPEN, NULL, "stiffness eta along the fibres of transversely_isotropic"}, \
   {"fibre", KEY_VEC3, offsetof(S, m fibre), "1", NULL, -1e9, 1e9, 0, NULL, "direction of the fibres of transversely_isotropic, of any length"}, \
+  {"fibre_field", KEY_STRING, offsetof(S, m fibre_field), "", NULL, 0, 0, 0, NULL, "in place of fibre: name of a view of vectors on the elements ($ElementData) in the mesh file"}, \
   {"prony_alpha", KEY_REALS, offsetof(S, m prony_alpha), "1", NULL, 0, 1, KEY_LO_OPEN | KEY_HI_OPEN, NULL, "viscoelasticity: parts of the isochoric stress that relax, a sum < 1"}, \
   {"prony_tau", KEY_REALS, offsetof(S, m prony_tau), "s", NULL, 0, 1e12, KEY_LO_OPEN, NULL, "relaxation time of each part in prony_alpha"}
 // clang-format on

@@ -92,7 +92,7 @@ static PetscErrorCode CheckParams(TLED tled, PetscInt k)
   const PetscBool           mooney  = (PetscBool)(p->material == TLED_MATERIAL_MOONEY_RIVLIN);
   const PetscBool           fibrous = (PetscBool)(p->material == TLED_MATERIAL_TRANSVERSELY_ISOTROPIC);
   const PetscBool           split   = (PetscBool)(p->material >= TLED_MATERIAL_NEO_HOOKEAN_ISO);
-  const PetscBool           along   = (PetscBool)(Norm3(p->fibre) > 0.0);
+  const PetscBool           along   = (PetscBool)(Norm3(p->fibre) > 0.0), field = (PetscBool)(p->fibre_field[0] != 0);
   char                      key[3 * BY_NAME_MAX];
 
   PetscFunctionBegin;
@@ -108,8 +108,11 @@ static PetscErrorCode CheckParams(TLED tled, PetscInt k)
   if (!split) ByCall(Refuse(tled, k, "bulk", (PetscBool)(p->bulk > 0.0), "neo_hookean_iso, mooney_rivlin or transversely_isotropic"));
   if (fibrous) {
     ByCall(Need(tled, k, "fibre_stiffness", (PetscBool)(p->fibre_stiffness > 0.0), "a finite number > 0 [Pa]: the fibres' stiffness"));
-    ByCall(Need(tled, k, "fibre", along, "a direction [x, y, z] that is not zero"));
+    ByCall(Need(tled, k, "fibre", (PetscBool)(along || field), "a direction [x, y, z] that is not zero, or fibre_field"));
+    PetscCall(MaterialKey(tled, k, "fibre_field", key, sizeof key));
+    if (along && field) PetscFunctionReturn(InputError(key, "is given, and fibre too\n  the fibres have one direction or a field"));
   } else {
+    ByCall(Refuse(tled, k, "fibre_field", field, "transversely_isotropic"));
     ByCall(Refuse(tled, k, "fibre_stiffness", (PetscBool)(p->fibre_stiffness > 0.0), "transversely_isotropic"));
     ByCall(Refuse(tled, k, "fibre", along, "transversely_isotropic"));
   }
@@ -178,20 +181,50 @@ PetscErrorCode TLEDMaterialsSetUp_Private(TLED tled)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* unit vectors along the fibres of each lane, for the laws that have them */
-PetscErrorCode TLEDFibresSetUp_Private(TLED tled)
+/* fibres of material k: its constant direction, or the field of its elements in the mesh file (n_tets x 3) */
+static PetscErrorCode ReadFibres(TLED tled, PetscInt k, PetscReal field[])
 {
-  TLEDBlocks *b    = &tled->blocks;
-  PetscBool   some = PETSC_FALSE;
+  const TLEDMaterialParams *p = &tled->materials[k];
+  char                      key[3 * BY_NAME_MAX];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < tled->n_materials; k++) some = (PetscBool)(some || tled->laws[k].law == TLED_LAW_TRANSVERSE);
-  if (!some) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(3 * b->n_packs * TLED_LANES, &b->fibre));
-  for (int l = 0; l < b->n_packs * TLED_LANES; l++) {
-    const int        pack  = l / TLED_LANES;
-    const PetscReal *fibre = tled->materials[b->material[pack]].fibre, size = Norm3(fibre);
-    for (int k = 0; k < 3 && size > 0.0; k++) b->fibre[(3 * pack + k) * TLED_LANES + l % TLED_LANES] = fibre[k] / size;
+  PetscCall(MaterialKey(tled, k, "fibre_field", key, sizeof key));
+  if (p->fibre_field[0]) ByCall(TLEDFieldRead_Private(key, tled->params.mesh, p->fibre_field, &tled->mesh, field));
+  for (PetscInt e = 0; e < tled->mesh.n_tets; e++) {
+    if (!p->fibre_field[0]) PetscCall(PetscArraycpy(&field[3 * e], p->fibre, 3));
+    if (tled->mesh.material[e] == k && !(Norm3(&field[3 * e]) > 0.0))
+      PetscFunctionReturn(InputError(key, "names the view %s, which has no direction for element %" PetscInt_FMT
+                                          " of the file\n  expected a vector that is not zero for each element of the material",
+                                     p->fibre_field, tled->mesh.tag[e]));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  TLEDFibresSetUp_Private - blocks.fibre, unit vectors along the fibres of each lane, for a body in which a law has them
+
+  Errors: BY_ERR_INPUT, reported: a field that the mesh file does not have, or that has no direction for an element
+*/
+PetscErrorCode TLEDFibresSetUp_Private(TLED tled)
+{
+  TLEDBlocks    *b = &tled->blocks;
+  PetscReal     *field;
+  PetscErrorCode ierr = PETSC_SUCCESS;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < tled->n_materials && !ierr; k++) {
+    if (tled->laws[k].law != TLED_LAW_TRANSVERSE) continue;
+    if (!b->fibre) PetscCall(PetscCalloc1(3 * b->n_packs * TLED_LANES, &b->fibre));
+    PetscCall(PetscMalloc1(3 * tled->mesh.n_tets, &field));
+    ierr = ReadFibres(tled, k, field);
+    for (int l = 0; l < b->n_packs * TLED_LANES && !ierr; l++) {
+      const int       pack = l / TLED_LANES;
+      const PetscReal *a   = &field[3 * b->element[l]];
+      if (b->element[l] < 0 || b->material[pack] != k) continue;
+      for (int i = 0; i < 3; i++) b->fibre[(3 * pack + i) * TLED_LANES + l % TLED_LANES] = a[i] / Norm3(a);
+    }
+    PetscCall(PetscFree(field));
+  }
+  ByCall(ierr);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

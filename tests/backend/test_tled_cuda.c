@@ -14,7 +14,7 @@ static void Bend(const PetscReal X[3], PetscReal u[3])
 static void DeviceForces_AreTheCPUs(void **state)
 {
   (void)state;
-  for (int law = 0; law < 2; law++) {
+  for (int law = 0; law <= TLED_MATERIAL_TRANSVERSELY_ISOTROPIC; law++) {
     TLEDParams      *p;
     TLED             tled = NewBody("tests/meshes/beam_h2.msh", &p);
     TLEDDevice       device;
@@ -24,6 +24,8 @@ static void DeviceForces_AreTheCPUs(void **state)
     PetscInt         n;
 
     p->elastic.material = law;
+    if (law == TLED_MATERIAL_MOONEY_RIVLIN) p->elastic.young = 0.0, p->elastic.c10 = 4e5, p->elastic.c01 = 1.8e5;
+    if (law == TLED_MATERIAL_TRANSVERSELY_ISOTROPIC) p->elastic.fibre_stiffness = 2e6, p->elastic.fibre[0] = p->elastic.fibre[2] = 1.0;
     assert_petsc(TLEDSetUp(tled));
     assert_petsc(TLEDGetSize(tled, &n, NULL));
     assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
