@@ -7,6 +7,7 @@ endfunction()
 
 byssus_run_test(conservation free_body)
 byssus_run_test(conservation resume)
+byssus_run_test(conservation breakdown)
 byssus_run_test(coupled fill)
 byssus_run_test(coupled floor)
 byssus_run_test(coupled held_ball)

@@ -114,7 +114,7 @@ static PetscErrorCode Finish(Run *run, PetscErrorCode outcome)
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the simulation broke down at %s\n", why));
     ByCall(CouplerResultsWrite(c, &run->results));
     ByCall(CouplerResultsSummary(c, &run->results, status, WallSeconds(run)));
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "results up to this time are in %s\n", run->params.directory));
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the state at the breakdown is the last of the results in %s\n", run->params.directory));
     PetscFunctionReturn(BY_ERR_BREAKDOWN);
   }
   ByCall(Save(run));
