@@ -99,13 +99,15 @@ static void AddRows(PetscInt n, const double K[], const PetscInt node[], PetscRe
 }
 
 /* Fictitious masses at u: for each node the sum over its elements of sum_b |K_ab|, which bounds M^-1 K by one in every mode (block
-   Gershgorin); then a common factor that makes the bound sharp. */
+   Gershgorin); then a common factor that makes the bound sharp; and what contact may push with
+   on top. */
 static PetscErrorCode MakeMasses(TLED tled, Relax *x, PetscInt n_steps)
 {
-  const TLEDBlocks *b = &tled->blocks;
-  const PetscInt    n = tled->mesh.n_corners;
-  double            K[9 * TLED_CORNERS_MAX * TLED_CORNERS_MAX];
-  PetscReal         top;
+  const TLEDBlocks  *b       = &tled->blocks;
+  const TLEDContact *contact = &tled->contact;
+  const PetscInt     n       = tled->mesh.n_corners;
+  double             K[9 * TLED_CORNERS_MAX * TLED_CORNERS_MAX];
+  PetscReal          top;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(x->mass, tled->mesh.n_nodes));
@@ -122,6 +124,8 @@ static PetscErrorCode MakeMasses(TLED tled, Relax *x, PetscInt n_steps)
   }
   ByCall(TLEDHighestMode_Private(tled, x->mass, x->u, n_steps, x->mode, &top));
   for (PetscInt a = 0; a < tled->mesh.n_nodes && top > 0.0; a++) x->mass[a] *= top / (4.0 * SAFETY * SAFETY);
+  for (PetscInt a = 0; a < tled->mesh.n_nodes && contact->n; a++)
+    x->mass[a] += contact->crowding * contact->stiffness * contact->area[a] / (4.0 * SAFETY * SAFETY);
   PetscCall(TLEDStrain_Private(tled, x->u, NULL, NULL, x->stretch));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -283,7 +283,8 @@ static PetscErrorCode AdvanceArrays(TLED tled, PetscReal dt, Work *w, PetscInt *
     left -= done;
     if (done < m) {
       tled->state.time = start + passed + h;
-      for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes && unstable && done + 1 < m; k++) w->u[k] -= h * w->v[k]; /* the step after was begun */
+      /* the step after an unstable one was begun: it is taken back */
+      for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes && unstable && done + 1 < m; k++) w->u[k] -= h * w->v[k];
       if (unstable) PetscFunctionReturn(TLEDReportUnstable_Private(tled, w->u, start + passed + h, h));
       PetscFunctionReturn(TLEDReportBroken_Private(tled, w->beta > 0.0 ? w->probe : w->u, start + passed + h));
     }

@@ -175,6 +175,57 @@ static void EveryMaterial_IsTheImplicitOne(void **state)
   }
 }
 
+/* A block pressed on a plane by its weight, its sides on planes of symmetry: the plane carries it, and the state is the implicit one. */
+static void Contact_CarriesTheWeight(void **state)
+{
+  const Block     block = {.n = {3, 3, 3}, .size = {0.3, 0.3, 0.3}, .order = 1};
+  const PetscReal down[3] = {0.0, 0.0, -50.0}, point[3] = {0.0, 0.0, -0.01}, up[3] = {0.0, 0.0, 1.0};
+  TLED            body[2];
+  TLEDImplicit    implicit;
+  PetscReal       residual;
+  PetscInt        steps;
+  double          difference;
+
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    TLEDParams          *p;
+    TLEDConstraintParams c;
+    body[i] = NewBlock(&block, &p);
+    for (int k = 0; k < 2; k++) {
+      assert_petsc(KeysSetDefaults(TLEDConstraintKeys, &c));
+      c.kind = TLED_CONSTRAINT_SYMMETRY;
+      AddName(&c.groups, k ? "ymin" : "xmin");
+      assert_petsc(TLEDAddConstraint(body[i], k ? "left" : "back", &c));
+    }
+    assert_petsc(TLEDSetGravity(body[i], down));
+    assert_petsc(TLEDAddContactPlane(body[i], "floor", point, up));
+    assert_petsc(TLEDSetUp(body[i]));
+    RemoveBlock(p);
+  }
+  assert_petsc(TLEDRelax(body[0], 0.0, 1e-7, 100000, &steps, &residual));
+  {
+    const PetscReal *u;
+    PetscReal       *w;
+    Vec              from, to;
+    /* a block that hangs in the air has no stiffness for Newton's method: it begins near the answer */
+    assert_petsc(TLEDGetVectors(body[0], &from, NULL, NULL));
+    assert_petsc(TLEDGetVectors(body[1], &to, NULL, NULL));
+    assert_petsc(VecGetArrayRead(from, &u));
+    assert_petsc(VecGetArray(to, &w));
+    for (PetscInt k = 0; k < 3 * 64; k++) w[k] = k % 3 == 2 ? 1.001 * u[k] : 0.999 * u[k];
+    assert_petsc(VecRestoreArrayRead(from, &u));
+    assert_petsc(VecRestoreArray(to, &w));
+  }
+  assert_petsc(TLEDImplicitCreate(PETSC_COMM_SELF, body[1], &implicit));
+  assert_petsc(TLEDImplicitSolveStatic(implicit, 0.0));
+  difference = Difference(body[0], body[1]);
+  printf("relax: block on a plane: %d steps, residual %.2g, largest difference to the implicit one %.2g\n", (int)steps, residual,
+         difference);
+  assert_close(difference, 0.0, 1e-6, 1.0);
+  assert_petsc(TLEDImplicitDestroy(&implicit));
+  for (int i = 0; i < 2; i++) assert_petsc(TLEDDestroy(&body[i]));
+}
+
 /* what is asked of too few steps is told */
 static void TooFewSteps_AreReported(void **state)
 {
@@ -192,4 +243,5 @@ static void TooFewSteps_AreReported(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(Cantilever_IsTheReference), cmocka_unit_test(EveryElement_IsTheImplicitOne),
-           cmocka_unit_test(EveryMaterial_IsTheImplicitOne), cmocka_unit_test(TooFewSteps_AreReported))
+           cmocka_unit_test(EveryMaterial_IsTheImplicitOne), cmocka_unit_test(Contact_CarriesTheWeight),
+           cmocka_unit_test(TooFewSteps_AreReported))
