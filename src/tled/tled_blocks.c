@@ -117,22 +117,63 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
   if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
 }
 
+/* coordinates of the nodes of element e */
+static void ElementNodes(const TLEDMesh *mesh, int e, double x[])
+{
+  for (PetscInt a = 0; a < mesh->n_corners; a++)
+    for (int k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[mesh->n_corners * e + a] + k];
+}
+
+/* whether the nodes of the edges lie in their middle, to round-off: the Jacobian is the same at all points */
+static PetscBool IsStraight(const double x[30])
+{
+  for (int e = 0; e < 6; e++) {
+    double off = 0.0, size = 0.0;
+    int    v, w;
+    TLEDEdgeT10(e, &v, &w);
+    for (int k = 0; k < 3; k++) {
+      off += fabs(2.0 * x[3 * (4 + e) + k] - x[3 * v + k] - x[3 * w + k]);
+      size += fabs(x[3 * v + k] - x[3 * w + k]);
+    }
+    if (off > 1e-13 * size) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* how many Jacobians each pack stores: they are most of what the loops read */
+static PetscErrorCode CountJacobians(const TLEDMesh *mesh, TLEDBlocks *b)
+{
+  double x[3 * TLED_CORNERS_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(b->n_packs + 1, &b->first_point));
+  b->first_point[0] = 0;
+  for (int pack = 0; pack < b->n_packs; pack++) {
+    PetscBool straight = PETSC_TRUE;
+    for (int l = TLED_LANES * pack; l < TLED_LANES * (pack + 1); l++) {
+      if (b->element[l] < 0) continue;
+      ElementNodes(mesh, b->element[l], x);
+      if (b->n_corners == 10 && !IsStraight(x)) straight = PETSC_FALSE;
+    }
+    b->first_point[pack + 1] = b->first_point[pack] + (straight ? 1 : b->n_points);
+  }
+  PetscCall(PetscCalloc1(9 * TLED_LANES * b->first_point[b->n_packs], &b->G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* of each lane and integration point what the element needs: gradients of nodes 1 to 3 and volume, or Jinv and weight times Jacobian */
 static void FillGeometry(const TLEDMesh *mesh, TLEDBlocks *b)
 {
-  const int n = b->n_corners;
-
   for (int l = 0; l < b->n_packs * TLED_LANES; l++) {
     const int pack = l / TLED_LANES, lane = l % TLED_LANES, e = b->element[l];
     double    x[3 * TLED_CORNERS_MAX], G[9] = {0.0}, L[4];
     if (e < 0) continue;
-    for (int a = 0; a < n; a++)
-      for (int k = 0; k < 3; k++) x[3 * a + k] = mesh->X[3 * mesh->tets[n * e + a] + k];
+    ElementNodes(mesh, e, x);
     for (int q = 0; q < b->n_points; q++) {
-      const int    place = (b->n_points * pack + q) * TLED_LANES;
+      const int    place = TLEDJacobianPlace(b, pack, q), n = b->n_corners;
       const double w     = n == 4 ? 1.0 : TLEDQuadratureT10(b->n_points, q, L);
-      b->V0[place + lane] = n == 4 ? TLEDReferenceGradients(x, G) : w * TLEDJacobianT10(L, x, G);
-      for (int k = 0; k < 9; k++) b->G[9 * place + k * TLED_LANES + lane] = G[k];
+      b->V0[(b->n_points * pack + q) * TLED_LANES + lane] = n == 4 ? TLEDReferenceGradients(x, G) : w * TLEDJacobianT10(L, x, G);
+      for (int k = 0; k < 9; k++) b->G[(9 * place + k) * TLED_LANES + lane] = G[k];
     }
   }
 }
@@ -180,11 +221,12 @@ PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks
   b->n_points  = n_points;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_FALSE);
   PetscCall(PetscMalloc3(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node));
-  PetscCall(PetscCalloc4(b->n_corners * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element,
-                         9 * n_points * b->n_packs * TLED_LANES, &b->G, n_points * b->n_packs * TLED_LANES, &b->V0));
+  PetscCall(PetscCalloc3(b->n_corners * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element,
+                         n_points * b->n_packs * TLED_LANES, &b->V0));
   PetscCall(PetscMalloc1(b->n_packs, &b->material));
   for (int l = 0; l < b->n_packs * TLED_LANES; l++) b->element[l] = -1;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_TRUE);
+  PetscCall(CountJacobians(mesh, b));
   FillGeometry(mesh, b);
   PetscCall(FillSlots(b));
   PetscCall(PetscFree2(block_of, local_of));
@@ -198,7 +240,9 @@ PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *b)
   PetscCall(PetscFree3(b->pack_offset, b->node_offset, b->node));
   PetscCall(PetscFree(b->material));
   PetscCall(PetscFree(b->fibre));
-  PetscCall(PetscFree4(b->local, b->element, b->G, b->V0));
+  PetscCall(PetscFree3(b->local, b->element, b->V0));
+  PetscCall(PetscFree(b->G));
+  PetscCall(PetscFree(b->first_point));
   PetscCall(PetscFree(b->slot_offset));
   PetscCall(PetscFree(b->slot));
   PetscCall(PetscMemzero(b, sizeof *b));

@@ -17,11 +17,12 @@ static void PointLinear(const TLEDBlocks *b, int l, int point, double G[], doubl
 /* ten-node tetrahedra: Jinv is stored, and the weight times the Jacobian as volume of the point */
 static void PointQuadratic(const TLEDBlocks *b, int l, int point, double G[], double *V0)
 {
-  const int place = (b->n_points * (l / TLED_LANES) + point) * TLED_LANES, lane = l % TLED_LANES;
+  const int pack = l / TLED_LANES, lane = l % TLED_LANES, place = (b->n_points * pack + point) * TLED_LANES;
+  const int jacobian = TLEDJacobianPlace(b, pack, point);
   double    L[4], Jinv[9];
 
   (void)TLEDQuadratureT10(b->n_points, point, L);
-  for (int k = 0; k < 9; k++) Jinv[k] = b->G[9 * place + k * TLED_LANES + lane];
+  for (int k = 0; k < 9; k++) Jinv[k] = b->G[(9 * jacobian + k) * TLED_LANES + lane];
   TLEDGradientsT10(L, Jinv, G);
   *V0 = b->V0[place + lane];
 }

@@ -76,7 +76,8 @@ typedef struct {
   int    *material;    /* n_packs: number of the law                                             */
   int    *local;       /* n_packs x n_corners x TLED_LANES: the corners as numbers within the block      */
   int    *element;     /* n_packs x TLED_LANES: number of the element, -1 for padding            */
-  double *G;           /* n_packs x n_points x 9 x TLED_LANES [1/m], 0 for padding; what it is, the element says */
+  double *G;           /* n_packs x 9 x TLED_LANES [1/m], 0 for padding; of ten nodes first_point[n_packs] x 9 x TLED_LANES: Jinv */
+  int    *first_point; /* n_packs + 1, ten nodes: how many are stored before a pack, 1 for straight elements, else n_points */
   double *V0;          /* n_packs x n_points x TLED_LANES: volume of a point [m^3], 0 for padding */
   double *fibre;       /* n_packs x 3 x TLED_LANES: unit vector along the fibres, 0 for none     */
   int    *slot_offset; /* n_nodes + 1                                                            */
@@ -282,6 +283,11 @@ void           TLEDViscousStress_OpenMP(const TLEDLoops *loops, int pack, int po
 extern const TLEDElementOps TLEDElementT4, TLEDElementANP, TLEDElementT10;
 PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */
 void           TLEDPointAt_Private(const TLEDLoops *loops, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p);
+/* number of the stored Jacobian of a point of a pack of ten-node elements */
+static inline int TLEDJacobianPlace(const TLEDBlocks *b, int pack, int point)
+{
+  return b->first_point[pack] + (b->first_point[pack + 1] - b->first_point[pack] == 1 ? 0 : point);
+}
 /* tled_blocks.c */
 PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks *blocks);
 PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *blocks);

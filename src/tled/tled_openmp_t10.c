@@ -152,8 +152,7 @@ INLINE int PackForces(int law, const TLEDLaw *material, const TLEDBlocks *b, int
 
   if (four) SlopesFour(p);
   for (int q = 0; q < b->n_points; q++) {
-    const int     place = (b->n_points * pack + q) * L;
-    const double *Jinv  = b->G + 9 * place, *V0 = b->V0 + place;
+    const double *Jinv = b->G + 9 * L * TLEDJacobianPlace(b, pack, q), *V0 = b->V0 + (b->n_points * pack + q) * L;
     double(*T)[L]      = p->T[four ? q : 0], L4[4];
     if (!four) {
       (void)TLEDQuadratureT10(b->n_points, q, L4);
@@ -189,8 +188,7 @@ KERNEL int ForcesViscous(const TLEDLoops *w, int pack, Pack *p)
 
   if (four) SlopesFour(p);
   for (int q = 0; q < b->n_points; q++) {
-    const int     place = (b->n_points * pack + q) * L;
-    const double *Jinv  = b->G + 9 * place, *V0 = b->V0 + place;
+    const double *Jinv = b->G + 9 * L * TLEDJacobianPlace(b, pack, q), *V0 = b->V0 + (b->n_points * pack + q) * L;
     double(*T)[L]      = p->T[four ? q : 0], L4[4];
     if (!four) {
       (void)TLEDQuadratureT10(b->n_points, q, L4);
