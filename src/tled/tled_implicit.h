@@ -52,7 +52,8 @@ BY_EXTERN PetscErrorCode TLEDImplicitDestroy(TLEDImplicit *implicit);
    BY_ERR_BREAKDOWN, TLEDGetBreakdown() says why, when no equilibrium is found; the TLED then holds the last one found on the way. */
 BY_EXTERN PetscErrorCode TLEDImplicitSolveStatic(TLEDImplicit implicit, PetscReal time);
 
-/* n_steps time steps of dt [s] by generalised-alpha from the TLED's state. Second order in dt, no limit on dt.
+/* n_steps time steps of dt [s] by generalised-alpha from the TLED's state. Second order in dt;
+   no limit on dt for small vibrations, some fifty steps a period for large ones.
    BY_ERR_BREAKDOWN as above; the TLED then holds the last complete step. */
 BY_EXTERN PetscErrorCode TLEDImplicitAdvance(TLEDImplicit implicit, PetscReal dt, PetscInt n_steps);
 

@@ -158,7 +158,8 @@ static PetscErrorCode Steps(TLEDImplicit im, PetscReal dt, PetscInt n_steps, Pet
 
   Input Parameters:
 + implicit - the solver
-. dt       - time step [s], > 0; any length: accuracy limits it, not stability
+. dt       - time step [s], > 0; of any length when the vibrations are small. Large ones need some fifty steps a period: with 24 the
+             midpoint rule gained a third of the energy of a beam that swings by half its length, with 43 it kept it within 0.1 %
 - n_steps  - how many
 
   Lumped mass, damping, constraints and loads are those of the explicit solid, so that both solve the same equations of motion. External
