@@ -81,17 +81,19 @@ BY_HD void TLEDAverageStress(const double H[9], double r, double inv_J, double J
      K_ai,bk += V0 sum_jl G_a,j A_ijkl G_b,l,  A = dP/dF at the gradient H that the law sees, G the nodes' reference gradients (n x 3) */
 BY_HD void TLEDElementStiffness(const TLEDLocalLaw *law, const double H[9], const double G[], int n, double V0, double K[])
 {
-  for (int k = 0; k < 3; k++) {
-    for (int l = 0; l < 3; l++) {
-      double dF[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, dP[9];
-      dF[3*k + l] = V0;
-      TLEDLocalDifferential(law, H, dF, dP);
-      for (int a = 0; a < n; a++) {
-        for (int i = 0; i < 3; i++) {
-          const double t = Dot3(&dP[3*i], &G[3*a]);
-          for (int b = 0; b < n; b++) K[3*n*(3*a + i) + 3*b + k] += t*G[3*b + l];
-        }
-      }
+  double A[81]; /* A_ij of direction kl */
+
+  for (int kl = 0; kl < 9; kl++) {
+    double dF[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    dF[kl] = V0;
+    TLEDLocalDifferential(law, H, dF, &A[9*kl]);
+  }
+  for (int a = 0; a < n; a++) {
+    for (int i = 0; i < 3; i++) {
+      double t[9], *row = &K[3*n*(3*a + i)];
+      for (int kl = 0; kl < 9; kl++) t[kl] = Dot3(&A[9*kl + 3*i], &G[3*a]);
+      for (int b = 0; b < n; b++)
+        for (int k = 0; k < 3; k++) row[3*b + k] += Dot3(&t[3*k], &G[3*b]);
     }
   }
 }

@@ -197,7 +197,7 @@ static void WrongMaterials_AreToldWithTheirKey(void **state)
 static void Materials_ComeFromOptions(void **state)
 {
   TLEDParams *p;
-  char       *path = Path("options.msh"), option[300];
+  char       *path = Path("options.msh"), option[600];
   TLED        tled = Body(path, &p);
   PetscReal   total = 0.0;
   PetscInt    n;
