@@ -122,6 +122,7 @@ typedef struct {
   PetscReal compression_mean, compression_max; /* of the fluid                                               */
   PetscReal speed_max, speed_rms;              /* of the fluid                                               */
   PetscReal solid_volume;
+  PetscReal solid_contact_energy, solid_external_work; /* stored in contact; done by fluid, loads and supports since the start */
 } CouplerLedger;
 BY_EXTERN PetscErrorCode CouplerGetLedger(Coupler coupler, CouplerLedger *ledger);
 

@@ -84,6 +84,8 @@ PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
     l->solid_potential += b.gravity_potential;
     l->solid_damping_loss += b.damping_loss;
     l->solid_volume += b.volume;
+    l->solid_contact_energy += b.contact_energy;
+    l->solid_external_work += b.external_work;
     for (int i = 0; i < 3; i++) {
       l->momentum[i] += b.momentum[i];
       l->angular[i] += b.angular[i];

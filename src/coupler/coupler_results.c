@@ -10,7 +10,8 @@ static const char *const ledger_headers[] = {
   "compression_max [1]", "fluid_kinetic [J]", "fluid_potential [J]", "fluid_viscous_loss [J]", "solid_kinetic [J]", "solid_strain [J]",
   "solid_potential [J]", "solid_damping_loss [J]", "work_fluid [J]", "work_solid [J]", "momentum_x [kg m/s]", "momentum_y [kg m/s]",
   "momentum_z [kg m/s]", "angular_x [kg m^2/s]", "angular_y [kg m^2/s]", "angular_z [kg m^2/s]", "fluid_speed_max [m/s]",
-  "fluid_speed_rms [m/s]", "solid_volume [m^3]"};
+  "fluid_speed_rms [m/s]", "solid_volume [m^3]",
+  "solid_contact_energy [J]", "solid_external_work [J]"};
 
 enum { N_LEDGER = sizeof(ledger_headers) / sizeof(ledger_headers[0]) };
 
@@ -70,7 +71,8 @@ static PetscErrorCode WriteLedger(Coupler c, CouplerResults *r)
                                    (PetscReal)l.penetrations, l.compression_mean, l.compression_max, l.fluid_kinetic, l.fluid_potential,
                                    l.fluid_viscous_loss, l.solid_kinetic, l.solid_strain, l.solid_potential, l.solid_damping_loss, l.work_fluid,
                                    l.work_solid, l.momentum[0], l.momentum[1], l.momentum[2], l.angular[0], l.angular[1], l.angular[2],
-                                   l.speed_max, l.speed_rms, l.solid_volume};
+                                   l.speed_max, l.speed_rms, l.solid_volume, l.solid_contact_energy,
+                                   l.solid_external_work};
   ByCall(TableWrite(r->ledger, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

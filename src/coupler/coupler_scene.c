@@ -96,6 +96,67 @@ static PetscErrorCode DampMesh(TLED tled, const char name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ReadObstacle(const char name[], Surface *surface)
+{
+  ObstacleParams params;
+  char           prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(KeysSetDefaults(ObstacleKeys, &params));
+  PetscCall(KeysSetFromOptions(ObstacleKeys, prefix, &params));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.surface", name));
+  ByCall(SurfaceRead(key, params.surface, params.scale, params.translate, surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* words of a list for a message */
+static const char *Words(const Names *names, char text[], size_t n)
+{
+  size_t used = 0;
+
+  snprintf(text, n, "none");
+  for (PetscInt k = 0; k < names->n && used < n; k++) used += (size_t)snprintf(text + used, n - used, "%s%s", k ? ", " : "", names->name[k]);
+  return text;
+}
+
+/* the walls and obstacles that a body's key `contact` names */
+static PetscErrorCode AddContacts(TLED tled, const char name[], const DomainParams *domain)
+{
+  static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+  TLEDParams              *params;
+  TopParams                top;
+  char                     key[2 * BY_NAME_MAX], walls[512], obstacles[512];
+
+  PetscFunctionBegin;
+  PetscCall(TLEDGetParams(tled, &params));
+  PetscCall(KeysSetDefaults(TopKeys, &top));
+  PetscCall(KeysSetFromOptions(TopKeys, "", &top));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.contact", name));
+  for (PetscInt i = 0; i < params->contact.n; i++) {
+    const char *with = params->contact.name[i];
+
+    if (HasName(&top.obstacles, with)) {
+      Surface surface;
+
+      ByCall(ReadObstacle(with, &surface));
+      PetscCall(TLEDAddContactSurface(tled, with, &surface));
+      PetscCall(SurfaceDestroy(&surface));
+    } else if (HasName(&domain->walls, with)) {
+      for (int k = 0; k < 6; k++) {
+        PetscBool       same;
+        const PetscReal normal[3] = {k / 2 == 0 ? 1.0 - k % 2 * 2.0 : 0.0, k / 2 == 1 ? 1.0 - k % 2 * 2.0 : 0.0, k / 2 == 2 ? 1.0 - k % 2 * 2.0 : 0.0};
+
+        PetscCall(PetscStrcmp(with, sides[k], &same));
+        if (same) PetscCall(TLEDAddContactPlane(tled, with, k % 2 ? domain->max : domain->min, normal));
+      }
+    } else
+      PetscFunctionReturn(InputError(key, "has %s, which is neither a wall of the domain nor an obstacle\nwalls (domain.walls): %s; obstacles: %s",
+                                     with, Words(&domain->walls, walls, sizeof(walls)), Words(&top.obstacles, obstacles, sizeof(obstacles))));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams *domain)
 {
   TLED             tled;
@@ -112,6 +173,7 @@ static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)tled, prefix));
   ByCall(TLEDSetFromOptions(tled));
   PetscCall(TLEDSetGravity(tled, c->gravity));
+  ByCall(AddContacts(tled, name, domain));
   ByCall(TLEDSetUp(tled));
   PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));
   PetscCall(TLEDGetMesh(tled, NULL, &tets, &X));
@@ -135,18 +197,14 @@ static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams
 
 static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainParams *domain)
 {
-  ObstacleParams params;
   Surface        surface;
   Proxy          proxy;
   SPHParams     *fluid;
   char           prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
-  PetscCall(KeysSetDefaults(ObstacleKeys, &params));
-  PetscCall(KeysSetFromOptions(ObstacleKeys, prefix, &params));
+  ByCall(ReadObstacle(name, &surface));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.surface", name));
-  ByCall(SurfaceRead(key, params.surface, params.scale, params.translate, &surface));
   PetscCall(SPHGetParams(c->sph, &fluid));
   ByCall(CheckInside(key, domain, fluid->spacing, surface.n_nodes, surface.x));
   PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
@@ -158,6 +216,29 @@ static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainPa
   ByCall(ProxySetUp(proxy));
   PetscCall(CouplerAddObstacle(c, name, proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
   PetscCall(SurfaceDestroy(&surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* without a fluid an obstacle is there for the bodies that name it */
+static PetscErrorCode CheckObstacles(const TopParams *top)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < top->obstacles.n; k++) {
+    PetscBool used = PETSC_FALSE;
+
+    for (PetscInt b = 0; b < top->bodies.n; b++) {
+      TLEDParams body;
+      char       prefix[2 * BY_NAME_MAX];
+
+      PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", top->bodies.name[b]));
+      PetscCall(KeysSetDefaults(TLEDKeys, &body));
+      PetscCall(KeysSetFromOptions(TLEDKeys, prefix, &body));
+      used = (PetscBool)(used || HasName(&body.contact, top->obstacles.name[k]));
+    }
+    if (!used)
+      PetscFunctionReturn(InputError("obstacles", "has %s, on which nothing acts: the scene has no fluid, and no body has it in `contact`\n"
+                                     "add a section `sph:`, or %s to a body's `contact`", top->obstacles.name[k], top->obstacles.name[k]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,7 +325,7 @@ PetscErrorCode CouplerSetFromOptions(Coupler c)
   ByCall(ReadDomain(&domain, &has_domain));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-sph_spacing", &has_fluid));
   if (has_fluid && !has_domain) PetscFunctionReturn(InputError("sph.spacing", "a fluid needs a domain\nadd a section `domain: {min: ..., max: ...}`"));
-  if (!has_fluid && top.obstacles.n) PetscFunctionReturn(InputError("obstacles", "obstacles act on a fluid, and the scene has none\nadd a section `sph:`"));
+  if (!has_fluid) ByCall(CheckObstacles(&top));
   if (!has_fluid && !top.bodies.n) PetscFunctionReturn(InputError("bodies", "the scene has neither a fluid (section `sph:`) nor a body (`bodies: [name]`)"));
   if (has_fluid) {
     PetscCall(SPHCreate(PETSC_COMM_SELF, &c->sph));
@@ -256,7 +337,7 @@ PetscErrorCode CouplerSetFromOptions(Coupler c)
     const PetscErrorCode ierr = BuildBody(c, top.bodies.name[k], &domain);
     if (ierr != BY_ERR_INPUT) PetscCall(ierr); /* go on, so that every bad body is reported */
   }
-  for (PetscInt k = 0; k < top.obstacles.n; k++) {
+  for (PetscInt k = 0; k < top.obstacles.n && has_fluid; k++) {
     const PetscErrorCode ierr = BuildObstacle(c, top.obstacles.name[k], &domain);
     if (ierr != BY_ERR_INPUT) PetscCall(ierr);
   }

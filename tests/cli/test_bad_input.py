@@ -50,6 +50,22 @@ CASES = [
     ("domain inside out", GOOD, "max: [0.4, 0.2, 0.4]", "max: [-0.4, 0.2, 0.4]", 2, [":2: domain"]),
     ("wall and periodic", GOOD, "walls:", "periodic: [x], walls:", 2, [":2: domain."]),
     ("probe of an unknown body", GOOD, "bodies:", "probes: [tip]\ntip: {body: blok, quantity: displacement}\nbodies:", 2, [":9: tip.body = blok"]),
+    ("support of an unknown group", GOOD, "fixed: [root]", "constraints: [hand], hand: {groups: [skn]}", 2, [":9: block.hand.groups", "skn", "did you mean skin"]),
+    ("support of a direction that is none", GOOD, "fixed: [root]", "constraints: [hand], hand: {groups: [root], components: [w]}", 2, [":9: block.hand.components", "x, y, z"]),
+    ("motion without a course", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], translation: [0, 0, 1]}", 2, [":9: block.hand.course", "linear, ramp"]),
+    ("motion that moves nothing", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], course: ramp, duration: 1}", 2, [":9: block.hand.translation"]),
+    ("rotation without an axis", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], angle: 90, course: ramp, duration: 1}", 2, [":9: block.hand.axis"]),
+    ("ramp without a duration", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], angle: 90, axis: [0, 0, 1], course: ramp}", 2, [":9: block.hand.duration"]),
+    ("table that is not there", GOOD, "fixed: [root]", "loads: [push], push: {groups: [skin], pressure: 1, course: table, table: none.csv}", 2, [":9: block.push.table", "none.csv"]),
+    ("table that does not ascend", GOOD, "fixed: [root]", "loads: [push], push: {groups: [skin], pressure: 1, course: table, table: table.csv}", 2, [":9: block.push.table", "does not ascend", "line 3"]),
+    ("symmetry plane that is none", GOOD, "fixed: [root]", "constraints: [mirror], mirror: {kind: symmetry, groups: [skin]}", 2, [":9: block.mirror.groups", "not plane"]),
+    ("node both held and moved", GOOD, "fixed: [root]", "fixed: [root], constraints: [hand], hand: {kind: motion, groups: [skin], translation: [0, 0, 1], course: linear, duration: 1}", 2, [":9: block.hand.groups", "of which node", "block.fixed"]),
+    ("load of nothing", GOOD, "fixed: [root]", "loads: [push], push: {groups: [skin]}", 2, [":9: block.push.pressure", "zero"]),
+    ("pressure on a volume", GOOD, "fixed: [root]", "loads: [push], push: {groups: [volume], pressure: 1}", 2, [":9: block.push.groups", "not a surface"]),
+    ("force beside the body", GOOD, "fixed: [root]", "loads: [push], push: {at: [1, 1, 1], force: [0, 0, 1]}", 2, [":9: block.push.at", "outside"]),
+    ("contact with what is not there", GOOD, "fixed: [root]", "contact: [zmin, rok]", 2, [":9: block.contact", "rok", "zmin"]),
+    ("contact with a side that is no wall", GOOD, "fixed: [root]", "contact: [zmax]", 2, [":9: block.contact", "zmax"]),
+    ("a support, a load and contact", GOOD, "fixed: [root]", "contact: [zmin], constraints: [hand], hand: {groups: [root], components: [z]}, loads: [push], push: {groups: [skin], pressure: 1}", 0, []),
     ("directory that cannot be made", GOOD, "directory: out", "directory: scene.yaml/out", 2, ["scene.yaml/out"]),
     ("resume from nothing", GOOD, "", "", 2, ["resume", "none"]),
 ]
@@ -71,6 +87,8 @@ def write(directory, scene, text):
         file.write(text)
     with open(os.path.join(directory, "scene.yaml"), "w") as file:
         file.write(scene)
+    with open(os.path.join(directory, "table.csv"), "w") as file:
+        file.write("0, 0\n1, 1\n0.5, 2\n")
 
 
 def report(name, done, wrong):
