@@ -91,6 +91,38 @@ static void Pressure_ObeysTheDivergenceTheorem(void **state)
   }
 }
 
+/* the same for a body of quadratic tetrahedra whose faces are bent: no force and no moment on its closed surface, p times the base's area
+   vector, by the circle that bounds it, on the dome; body forces give b V */
+static void QuadraticFaces_ObeyItToo(void **state)
+{
+  TLEDParams    *p;
+  TLED           tled[2];
+  double         sum[2][3], moment[3];
+  PetscReal     *u, *f;
+  TLEDLoadParams load, weight;
+
+  (void)state;
+  for (int part = 0; part < 2; part++) {
+    tled[part] = NewBody("tests/meshes/half_ball_2.msh", &p);
+    p->element = TLED_ELEMENT_T10;
+    load       = Load("dome");
+    weight     = Load("solid");
+    if (!part) AddName(&load.groups, "base");
+    load.pressure = 1e5, weight.body_force[0] = 3e4;
+    assert_petsc(TLEDAddLoad(tled[part], "push", &load));
+    if (!part) assert_petsc(TLEDAddLoad(tled[part], "weight", &weight));
+    assert_petsc(TLEDSetUp(tled[part]));
+    u = Displaced(tled[part], part ? 0.0 : 0.002);
+    f = Forces(tled[part], 0.0, u, sum[part], moment);
+    assert_petsc(PetscFree(u));
+    assert_petsc(PetscFree(f));
+  }
+  assert_close(sum[0][0], 3e4 * tled[0]->volume, 5e-6, 8.0); /* the body's volume is by the rule of four points, exact on straight edges */
+  for (int k = 1; k < 3; k++) assert_close(sum[0][k], 0.0, ROUND, 1e5 * 0.0025 * PETSC_PI);
+  assert_close(sum[1][2], -1e5 * 0.0025 * PETSC_PI, 5e-3, 1e5 * 0.0025 * PETSC_PI); /* arcs of the base's circle by parabolas */
+  for (int part = 0; part < 2; part++) assert_petsc(TLEDDestroy(&tled[part]));
+}
+
 /* faces of six nodes: the four curved faces of a tetrahedron give no net force and moment either */
 static void CurvedFaces_AreIntegratedExactly(void **state)
 {
@@ -300,6 +332,6 @@ static void Work_IsInTheLedger(void **state)
   assert_true(error[1] < 0.5 * error[0] || error[0] < 1e-6);
 }
 
-CHECK_MAIN(cmocka_unit_test(Pressure_ObeysTheDivergenceTheorem), cmocka_unit_test(CurvedFaces_AreIntegratedExactly),
+CHECK_MAIN(cmocka_unit_test(Pressure_ObeysTheDivergenceTheorem), cmocka_unit_test(QuadraticFaces_ObeyItToo), cmocka_unit_test(CurvedFaces_AreIntegratedExactly),
            cmocka_unit_test(Stiffness_IsTheDerivative), cmocka_unit_test(Tangent_IsThatOfTheForces),
            cmocka_unit_test(Pressure_PassesThePatchTest), cmocka_unit_test(DeadLoads_GiveTheirTotals), cmocka_unit_test(Work_IsInTheLedger))
