@@ -163,12 +163,15 @@ static PetscErrorCode SummaryBodies(Coupler c, Json json)
   for (PetscInt k = 0; k < c->n_surfaces; k++) {
     CouplerSurface *s = &c->surface[k];
     PetscInt        n_nodes, n_tets;
+    PetscReal       added;
 
     PetscCall(JsonBegin(json, s->name));
     if (s->tled) {
       PetscCall(TLEDGetSize(s->tled, &n_nodes, &n_tets));
       PetscCall(JsonInt(json, "nodes", n_nodes));
       PetscCall(JsonInt(json, "tets", n_tets));
+      PetscCall(TLEDGetAddedMass(s->tled, NULL, &added));
+      PetscCall(JsonReal(json, "added_mass_percent", added));
     }
     PetscCall(JsonReal(json, "proxies_mean", s->n_proxies_sum / PetscMax(1, c->step)));
     if (s->tled) {

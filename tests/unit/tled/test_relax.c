@@ -29,7 +29,7 @@ static TLED Cantilever(const Reference *ref, int element)
 
 static void Cantilever_IsTheReference(void **state)
 {
-  const Reference all[4] = {
+  const Reference all[6] = {
       {"tests/meshes/beam_h1.msh", TLED_MATERIAL_NEO_HOOKEAN, 0.3,
        {-0.04142484237735666, -0.0009972955093733896, -0.2709548025632535}, 5.317299312167156},
       {"tests/meshes/beam_h1.msh", TLED_MATERIAL_NEO_HOOKEAN, 0.45,
@@ -37,10 +37,14 @@ static void Cantilever_IsTheReference(void **state)
       {"tests/meshes/beam_h1.msh", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.3,
        {-0.042361426579887194, -0.0007976745029058303, -0.27165781027625807}, 5.341168338410373},
       {"tests/meshes/beam_h1.msh", TLED_MATERIAL_ST_VENANT_KIRCHHOFF, 0.45,
-       {-0.02631445146114603, -0.0011003582678427604, -0.21481358917485185}, 4.248196232583419}};
+       {-0.02631445146114603, -0.0011003582678427604, -0.21481358917485185}, 4.248196232583419},
+      {"tests/meshes/beam_h2.msh", TLED_MATERIAL_NEO_HOOKEAN, 0.3,
+       {-0.0699426402226059, -0.0012685459146781549, -0.345839747271417}, 6.569205761610543},
+      {"tests/meshes/beam_h3.msh", TLED_MATERIAL_NEO_HOOKEAN, 0.3,
+       {-0.08521933372527414, -6.998312134308357e-05, -0.3799918048993587}, 7.165240450128981}};
 
   (void)state;
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 6; i++) {
     TLED             tled = Cantilever(&all[i], TLED_ELEMENT_T4);
     TLEDStats        stats;
     const PetscReal *x;
@@ -55,7 +59,7 @@ static void Cantilever_IsTheReference(void **state)
     for (int k = 0; k < 3; k++) worst = fmax(worst, fabs(x[3 * tip + k] - all[i].tip[k]) / fabs(all[i].tip[2]));
     assert_petsc(VecRestoreArrayRead(u, &x));
     assert_petsc(TLEDGetStats(tled, &stats));
-    printf("relax: cantilever nu %.2f %s: %d steps, residual %.2g, tip %.2g, energy %.2g\n", all[i].poisson,
+    printf("relax: %s nu %.2f %s: %d steps, residual %.2g, tip %.2g, energy %.2g\n", all[i].mesh, all[i].poisson,
            all[i].material ? "svk" : "neo-hookean", (int)steps, residual, worst, fabs(stats.strain / all[i].energy - 1.0));
     assert_close(worst, 0.0, 1e-7, 1.0);
     assert_close(stats.strain, all[i].energy, 1e-7, all[i].energy);
