@@ -61,7 +61,7 @@ typedef struct {
   int       quantity; /* ProbeQuantity */
 } ProbeParams;
 
-typedef enum { VERIFY_STATIC, VERIFY_DYNAMIC, VERIFY_BOTH, VERIFY_NONE } VerifyKind;
+typedef enum { VERIFY_STATIC, VERIFY_DYNAMIC, VERIFY_BOTH, VERIFY_IMPLICIT, VERIFY_NONE } VerifyKind;
 
 typedef struct {
   int       kind;              /* VerifyKind                                                              */

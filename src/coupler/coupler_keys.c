@@ -8,7 +8,7 @@
 static const char *const wall_names[]   = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
 static const char *const axis_names[]   = {"x", "y", "z", NULL};
 static const char *const scheme_names[] = {"auto", "explicit", "mass", NULL};
-static const char *const kinds[]        = {"static", "dynamic", "both", "none", NULL};
+static const char *const kinds[]        = {"static", "dynamic", "both", "implicit", "none", NULL};
 static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", NULL};
 
 // clang-format off
@@ -63,7 +63,7 @@ const Key ProbeKeys[] = {
   KEY_END};
 
 const Key VerifyKeys[] = {
-  {"kind",              KEY_CHOICE, ROW(VerifyParams, kind),              "",  "static", 0, 0, 0, kinds, "what is compared: equilibrium, motion, both; none = frequencies alone"},
+  {"kind",              KEY_CHOICE, ROW(VerifyParams, kind),              "",  "static", 0, 0, 0, kinds, "what is compared: equilibrium, motion, both; implicit = nothing, the implicit equilibrium alone; none = frequencies alone"},
   {"tolerance",         KEY_REAL,   ROW(VerifyParams, tolerance),         "1", "1e-6", 0, 1, KEY_LO_OPEN, NULL, "allowed largest nodal difference of the equilibria, over the largest displacement"},
   {"relax_tolerance",   KEY_REAL,   ROW(VerifyParams, relax_tolerance),   "1", "1e-9", 0, 1, KEY_LO_OPEN, NULL, "relative residual at which the explicit solid counts as at rest"},
   {"relax_steps",       KEY_INT,    ROW(VerifyParams, relax_steps),       "1", "1000000", 1, 2e9, 0, NULL, "steps that its relaxation may take"},

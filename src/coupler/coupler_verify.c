@@ -123,7 +123,7 @@ static PetscErrorCode Describe(Verify *v)
 {
   TLED        tled = VerifyBody(v, EXPLICIT);
   PetscInt    n_nodes, n_tets, n_corners;
-  PetscReal   critical;
+  PetscReal   critical = 0.0;
   const char *element;
 
   PetscFunctionBegin;
@@ -153,7 +153,7 @@ static PetscErrorCode CompareBody(Verify *v)
   /* modes first: about the body as it was built */
   if (v->params.modes) ierr = VerifyModes(v);
   if (!ierr && (kind == VERIFY_DYNAMIC || kind == VERIFY_BOTH)) ierr = VerifyDynamic(v);
-  if (!ierr && (kind == VERIFY_STATIC || kind == VERIFY_BOTH)) ierr = VerifyStatic(v);
+  if (!ierr && (kind == VERIFY_STATIC || kind == VERIFY_BOTH || kind == VERIFY_IMPLICIT)) ierr = VerifyStatic(v);
   if (ierr != BY_ERR_BREAKDOWN) ByCall(ierr);
   PetscCall(JsonEnd(v->json));
   ByCall(ierr);
