@@ -4,6 +4,9 @@ import cases
 import reference
 from program import Failure, small, table, test_lines, verdict, verify
 
+# one factorisation is quicker than many iterations up to some 50,000 unknowns
+DIRECT = {"implicit": {"direct_below": 100000}}
+
 SAME_MESH = """Every row: the explicit solid brought to rest by dynamic relaxation (`TLEDRelax`, to 1e-9) and the implicit solid (Newton, PETSc) on the same
 mesh, elements and law; the beam under its weight, large deflection (0.2 to 0.45 m of 1 m). Allowed: 1e-6 of the largest displacement at every node."""
 
@@ -66,12 +69,12 @@ def locking():
     for sides, (_, _, graded) in reference.COOK_BEST.items():
         for k, size in enumerate(("h1", "h2", "h3")):
             values = {"t4": 100 * (reference.COOK_P1[sides]["cook_" + size][0] / graded - 1)}
-            for element in ("anp", "t10"):
-                found = verify(f"locking_{element}_{size}_{sides}", cases.cook(size, element, sides), kind="implicit")["static"]
-                values[element] = 100 * (found["probes"]["corner_y"]["implicit"] / graded - 1)
+            found = verify(f"locking_anp_{size}_{sides}", cases.cook(size, "anp", sides), kind="implicit")["static"]
+            values["anp"] = 100 * (found["probes"]["corner_y"]["implicit"] / graded - 1)
+            values["p2"] = 100 * (reference.COOK_P2[sides]["cook_" + size][0] / graded - 1)
             bar = reference.COOK_ANP[sides][k]
-            rows.append((sides, size, f"{values['t4']:.1f} %", f"{values['anp']:.2f} %", f"{bar} %", verdict(abs(values["anp"]) <= abs(bar) + 0.05), f"{values['t10']:.2f} %"))
-    return LOCKING + "\n\n" + table(["sides", "mesh", "t4", "anp", "prototype", "anp as good (rounded)", "t10"], rows)
+            rows.append((sides, size, f"{values['t4']:.1f} %", f"{values['anp']:.2f} %", f"{bar} %", verdict(abs(values["anp"]) <= abs(bar) + 0.05), f"{values['p2']:.2f} %"))
+    return LOCKING + "\n\n" + table(["sides", "mesh", "t4", "anp", "prototype", "anp as good (rounded)", "P2, reference"], rows)
 
 
 QUADRATIC = """`t10` against P2 elements of the independent code. Same mesh, quadrature of degree 5 (14 points; the reference has degree 4): both integrate the same
@@ -83,7 +86,7 @@ def quadratic():
     rows = []
     for (law, poisson), (best, bar, energy, energy_bar) in reference.BEAM_BEST.items():
         for size, rule in (("h1", "14"), ("h1", "4"), ("hgg", "14"), ("hgg", "4")):
-            found = verify(f"t10_{size}_{law}_{poisson}_{rule}", cases.beam(size, "t10", law, poisson, quadrature=rule), kind="implicit")["static"]
+            found = verify(f"t10_{size}_{law}_{poisson}_{rule}", cases.beam(size, "t10", law, poisson, quadrature=rule, **DIRECT), kind="implicit")["static"]
             tip = [found["probes"]["tip_" + c]["implicit"] for c in "xyz"]
             work = found["energy"]["implicit"]
             same, _ = reference.BEAM_P2[law, poisson]["beam_" + size]
@@ -91,15 +94,15 @@ def quadratic():
             rows.append((f"beam_{size}", f"{law}, nu {poisson}", rule, f"({tip[0]:.7f}, {tip[2]:.7f}) m", small(relative(tip[2], same[2])), f"{tip[2] - best[2]:+.1e} of ±{bar[2]:.0e}",
                          f"{work - energy:+.1e} of ±{energy_bar:.0e}", verdict(inside) if size == "hgg" else ""))
     for size, rule in (("h1", "14"), ("h2", "14"), ("h3", "14")):
-        found = verify(f"t10_twist_{size}_{rule}", cases.twist(size, "t10", quadrature=rule), kind="implicit", time=1)["static"]
+        found = verify(f"t10_twist_{size}_{rule}", cases.twist(size, "t10", quadrature=rule, **DIRECT), kind="implicit", time=1)["static"]
         torque = found["reactions"]["top"]["moment_z"]["implicit"]
         inside = abs(torque - reference.TWIST_BEST[0]) <= reference.TWIST_BAR[0]
         work = found["energy"]["implicit"]
         rows.append((f"twist_{size}", "neo_hookean, torque", rule, f"{torque:.3f} N m", small(relative(torque, reference.TWIST_P2["twist_" + size][0])),
                      f"{torque - reference.TWIST_BEST[0]:+.1f} of ±{reference.TWIST_BAR[0]:.1f}", f"{work - reference.TWIST_BEST[2]:+.1f} of ±{reference.TWIST_BAR[2]:.1f}", verdict(inside) if size == "h3" else ""))
     for sides, (best, bar, _) in reference.COOK_BEST.items():
-        for size in ("h1", "h2", "h3"):
-            found = verify(f"t10_cook_{size}_{sides}", cases.cook(size, "t10", sides, quadrature="14"), kind="implicit")["static"]
+        for size in ("h1", "h2"):
+            found = verify(f"t10_cook_{size}_{sides}", cases.cook(size, "t10", sides, quadrature="14", **DIRECT), kind="implicit")["static"]
             corner = found["probes"]["corner_y"]["implicit"]
             same = reference.COOK_P2[sides]["cook_" + size][0]
             rows.append((f"cook_{size}", f"nu 0.499, {sides}, corner", "14", f"{1e3 * corner:.5f} mm", small(relative(corner, same)), f"{1e3 * (corner - best):+.3f} of ±{1e3 * bar:.3f} mm (mixed)", "", ""))
