@@ -44,7 +44,7 @@ def energy():
         if element == "anp":
             period = 1 / verify("energy_anp_period", cases.beam("h1", "anp", law, poisson), kind="none", modes=1, modes_tolerance=0.1)["modes"]["1"]["eigenvalue"]
         end = 10 * period
-        probes, ledger = run(f"energy_{element}_{law}", cases.beam("h1", element, law, poisson), end, end / 2000)
+        probes, ledger = run(f"energy_{element}_{law}", cases.beam("h1", element, law, poisson), end, end / 400)
         moving = max(k + s for k, s in zip(ledger["solid_kinetic"], ledger["solid_strain"]))
         balance = [k + s + p for k, s, p in zip(ledger["solid_kinetic"], ledger["solid_strain"], ledger["solid_potential"])]
         balance = [b - balance[0] for b in balance]
