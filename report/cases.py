@@ -5,6 +5,8 @@ from program import mesh
 LAWS = ("neo_hookean", "st_venant_kirchhoff", "neo_hookean_iso", "mooney_rivlin", "transversely_isotropic")
 YOUNG = 3e6
 GRAVITY = [0, 0, -9.81]
+# the same load on a body of 1000 kg/m^3, integrated over the elements
+WEIGHT = {"loads": ["weight"], "weight": {"groups": ["solid"], "body_force": [0, 0, -9810.0]}}
 
 
 def law_keys(law, poisson):
