@@ -9,7 +9,8 @@
    is fast too; (3) flops and bytes of an element and step, counted by hand below, and the shares that follow.
 
    Bytes are those that must move once a step when nothing stays in a cache: a bar that fits into the caches has a share of the bandwidth
-   that says little, and it may exceed 1. Flops are those of the formulas, a division or root counted as one. */
+   that says little, and it may exceed 1. Flops are those of the formulas, a division or root counted as one (by hand, and the same by
+   running the functions on numbers that count). */
 #include "bench_bar.h"
 #include "bench_peak.h"
 #include "tled/tled.h"
@@ -36,19 +37,28 @@
 /* a node: about 33 a direction for both half kicks with their works, and 3 for each block that has it (taken as 2) */
 #define FLOPS_NODE    (3 * 33 + 6)
 
-/* stress of a law */
+/* ten nodes, four points: slopes of a direction 74, its forces 68; at a point: H 45, pull-back 54 */
+#define FLOPS_T10       (3 * (74 + 68) + 3 * 10)
+#define FLOPS_T10_POINT (45 + 54 + FLOPS_J)
+
+/* stress of a law, as its function stands */
 static const struct {
   const char *name;
   double      flops, logs; /* of the stress; 1: ln J is needed */
 } laws[] = {
-  {"neo_hookean",         62, 1}, /* 1/J 2, c 3, F 3, cofactor 27, P 27                              */
-  {"st_venant_kirchhoff", 105, 0}, /* E 45, S 12, F 3, P = F S 45                                     */
+  {"neo_hookean",           62,  1}, /* 1/J 2, c 3, F 3, cofactor 27, P 27        */
+  {"st_venant_kirchhoff",   105, 0}, /* E 45, S 12, F 3, P = F S 45               */
+  {"neo_hookean_iso",       215, 0}, /* with J^(-1/3) 37                          */
+  {"mooney_rivlin",         268, 0},
+  {"transversely_isotropic", 400, 0},
 };
 
 /* ---- bytes ----
    an element: gradients 72, volume 8, corners 16; each block's slot of a node: partial force written and read 48, numbers 8; a node: u and v read
    and written 96, force written and read 48, external force 24, mass 8, place 24, displacement loaded by its blocks 48 */
 #define BYTES_T4      (72 + 8 + 16)
+/* of ten nodes, straight edges: one inverse Jacobian, weights of four points, corners */
+#define BYTES_T10     (72 + 4 * 8 + 40)
 #define SLOTS_A_NODE  2
 #define BYTES_SLOT    56
 #define BYTES_NODE    (96 + 48 + 24 + 8 + 24 + 48)
@@ -105,10 +115,30 @@ static Work Count(int element, const char law[], PetscInt n_nodes, PetscInt n_te
     if (element == TLED_ELEMENT_T4) w.flops = FLOPS_H + FLOPS_J + stress + FLOPS_FORCES + FLOPS_SCATTER;
     /* three passes: volumes; pressures; forces */
     if (element == TLED_ELEMENT_ANP) w.flops = 3 * (FLOPS_H + FLOPS_J) + 2 * (FLOPS_AVERAGE + stress) + 10 + 5 + 4 + FLOPS_BACK + FLOPS_FORCES + FLOPS_SCATTER;
+    if (element == TLED_ELEMENT_T10) w.flops = FLOPS_T10 + 4 * (FLOPS_T10_POINT + stress);
   }
-  w.bytes = (element == TLED_ELEMENT_ANP ? 3 : 1) * BYTES_T4 + nodes * (BYTES_NODE + (element == TLED_ELEMENT_ANP ? 3 : 1) * SLOTS_A_NODE * BYTES_SLOT);
+  w.bytes = element == TLED_ELEMENT_T10 ? BYTES_T10 : (element == TLED_ELEMENT_ANP ? 3 : 1) * BYTES_T4;
+  w.bytes += nodes * (BYTES_NODE + (element == TLED_ELEMENT_ANP ? 3 : 1) * SLOTS_A_NODE * BYTES_SLOT);
   if (w.flops > 0.0) w.flops += nodes * FLOPS_NODE;
   return w;
+}
+
+/* E 3 MPa and nu, for laws without them the same at small strain; fibres along the bar */
+static void SetConstants(TLEDMaterialParams *m, double poisson)
+{
+  const double young = 3e6, shear = young / (2.0 * (1.0 + poisson));
+
+  m->poisson = poisson;
+  if (m->material == TLED_MATERIAL_MOONEY_RIVLIN) {
+    m->c10  = 0.35 * shear;
+    m->c01  = 0.15 * shear;
+    m->bulk = young / (3.0 * (1.0 - 2.0 * poisson));
+    return;
+  }
+  m->young = young;
+  if (m->material != TLED_MATERIAL_TRANSVERSELY_ISOTROPIC) return;
+  m->fibre_stiffness = shear;
+  m->fibre[0]        = 1.0;
 }
 
 static PetscErrorCode NewBody(const char mesh[], int element, int law, TLED *tled)
@@ -120,11 +150,10 @@ static PetscErrorCode NewBody(const char mesh[], int element, int law, TLED *tle
   PetscCall(TLEDCreate(PETSC_COMM_SELF, "bar", tled));
   PetscCall(TLEDGetParams(*tled, &p));
   PetscCall(PetscStrncpy(p->mesh, mesh, sizeof p->mesh));
-  p->elastic.young    = 3e6;
   p->elastic.density  = 1000.0;
-  p->elastic.poisson  = element == TLED_ELEMENT_ANP ? 0.45 : 0.3;
   p->elastic.material = law;
   p->element          = element;
+  SetConstants(&p->elastic, element == TLED_ELEMENT_ANP ? 0.45 : 0.3);
   PetscCall(PetscStrncpy(p->fixed.name[p->fixed.n++], "clamp", BY_NAME_MAX));
   PetscCall(TLEDSetGravity(*tled, g));
   ByCall(TLEDSetUp(*tled));
