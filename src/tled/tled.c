@@ -131,11 +131,13 @@ static PetscErrorCode SetUpLoops(TLED tled)
   w->blocks = b;
   PetscCall(PetscMalloc2(3 * tled->blocks.n_slots, &w->partial, tled->blocks.n_blocks, &w->status));
   if (w->anp) {
-    PetscCall(PetscMalloc3(tled->mesh.n_nodes, &w->nodal, tled->mesh.n_nodes, &w->pressure, tled->mesh.n_nodes, &w->weight));
-    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 0.0;
+    const PetscInt n = tled->mesh.n_nodes * w->n_laws;
+    PetscCall(PetscMalloc3(n, &w->nodal, n, &w->pressure, n, &w->weight));
+    PetscCall(PetscArrayzero(w->weight, n));
     for (int l = 0; l < TLED_LANES * b->n_packs; l++)
-      for (int a = 0; a < 4 && b->element[l] >= 0; a++) w->weight[tled->mesh.tets[4 * b->element[l] + a]] += b->V0[l];
-    for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) w->weight[a] = 1.0 / w->weight[a];
+      for (int a = 0; a < 4 && b->element[l] >= 0; a++) w->weight[TLEDAverageOf(w, tled->mesh.tets[4 * b->element[l] + a], b->material[l / TLED_LANES])] += b->V0[l];
+    for (PetscInt k = 0; k < n; k++)
+      if (w->weight[k] > 0.0) w->weight[k] = 1.0 / w->weight[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -93,7 +93,10 @@ PetscErrorCode TLEDAssemblyCreate_Private(MPI_Comm comm, TLED tled, TLEDAssembly
     for (PetscInt k = 0; k < nc * nc; k++) s->slot[nc * nc * e + k] = Place(s, tets[nc * e + k / nc], tets[nc * e + k % nc]);
   n_blocks = s->row[n_own];
   PetscCall(PetscMalloc1(9 * n_blocks, &s->stiffness));
-  if (tled->loops.anp) PetscCall(PetscMalloc3(3 * n_blocks, &s->ratio, 3 * n_blocks, &s->coupling, n_blocks, &s->pressure));
+  s->n_laws = tled->loops.n_laws;
+  if (tled->loops.anp)
+    PetscCall(PetscMalloc3(3 * s->n_laws * n_blocks, &s->ratio, 3 * s->n_laws * n_blocks, &s->coupling, s->n_laws * s->n_laws * n_blocks,
+                           &s->pressure));
   *assembly = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,6 +161,7 @@ static void ContractTangent(const double A[81], const double G4[12], double V0, 
 static void AddAverage(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
 {
   const TLEDLoops *w      = &tled->loops;
+  const int        m      = w->blocks->material[l / TLED_LANES];
   const PetscInt   e      = w->blocks->element[l];
   const PetscInt  *corner = &tled->mesh.tets[4 * e], *slot = &s->slot[16 * e];
   double           F[9], cof[9], A[81], K[144], dpbar[9], dP[9], dC[9], jbar = 0.0, p = 0.0;
@@ -167,7 +171,7 @@ static void AddAverage(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
   const double V0 = at_u.V0, *G4 = at_u.G, *H = at_u.H;
   TLEDDeformationGradient(H, F);
   TLEDCofactor(F, cof);
-  for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]], p += w->pressure[corner[a]];
+  for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[TLEDAverageOf(w, corner[a], m)], p += w->pressure[TLEDAverageOf(w, corner[a], m)];
   for (int k = 0; k < 9; k++) {
     double dF[9] = {0.0};
     dF[k]    = 1.0;
@@ -182,10 +186,10 @@ static void AddAverage(TLED tled, int l, const PetscReal u[], TLEDAssembly *s)
     for (int b = 0; b < 4; b++) {
       const PetscInt at = slot[4 * a + b];
       if (at < 0) continue;
-      s->pressure[at] += V0 * d2 / 16.0;
+      s->pressure[s->n_laws * (s->n_laws * at + m) + m] += V0 * d2 / 16.0;
       for (int k = 0; k < 3; k++) {
-        s->ratio[3 * at + k] += w->weight[corner[a]] * V0 * Dot3(&cof[3 * k], &G4[3 * b]);
-        s->coupling[3 * at + k] += 0.25 * V0 * Dot3(&dpbar[3 * k], &G4[3 * b]);
+        s->ratio[3 * (s->n_laws * at + m) + k] += w->weight[TLEDAverageOf(w, corner[a], m)] * V0 * Dot3(&cof[3 * k], &G4[3 * b]);
+        s->coupling[3 * (s->n_laws * at + m) + k] += 0.25 * V0 * Dot3(&dpbar[3 * k], &G4[3 * b]);
       }
     }
   }
@@ -226,9 +230,9 @@ PetscErrorCode TLEDAssemblyFill_Private(TLED tled, const PetscReal u[], TLEDTang
   }
   PetscCall(PetscArrayzero(s->stiffness, 9 * n_blocks));
   if (s->average) {
-    PetscCall(PetscArrayzero(s->ratio, 3 * n_blocks));
-    PetscCall(PetscArrayzero(s->coupling, 3 * n_blocks));
-    PetscCall(PetscArrayzero(s->pressure, n_blocks));
+    PetscCall(PetscArrayzero(s->ratio, 3 * s->n_laws * n_blocks));
+    PetscCall(PetscArrayzero(s->coupling, 3 * s->n_laws * n_blocks));
+    PetscCall(PetscArrayzero(s->pressure, s->n_laws * s->n_laws * n_blocks));
   }
   for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
     if (b->element[l] < 0 || !Touches(s, nc, &tled->mesh.tets[nc * b->element[l]])) continue;
@@ -243,8 +247,8 @@ void TLEDAssemblyScale_Private(TLEDAssembly *s, PetscReal factor)
   const PetscInt n_blocks = s->row[s->last - s->first];
 
   for (PetscInt k = 0; k < 9 * n_blocks; k++) s->stiffness[k] *= factor;
-  for (PetscInt k = 0; k < 3 * n_blocks && s->average; k++) s->coupling[k] *= factor;
-  for (PetscInt k = 0; k < n_blocks && s->average; k++) s->pressure[k] *= factor;
+  for (PetscInt k = 0; k < 3 * s->n_laws * n_blocks && s->average; k++) s->coupling[k] *= factor;
+  for (PetscInt k = 0; k < s->n_laws * s->n_laws * n_blocks && s->average; k++) s->pressure[k] *= factor;
 }
 
 void TLEDAssemblyAdd_Private(TLEDAssembly *s, PetscInt a, PetscInt b, PetscReal factor, const PetscReal block[9])
@@ -292,8 +296,10 @@ void TLEDAssemblyProject_Private(TLED tled, PetscReal held, TLEDAssembly *s)
     for (PetscInt k = s->row[a - s->first]; k < s->row[a - s->first + 1]; k++) {
       const PetscReal *P_b = TLEDConstraintProjector_Private(tled, s->column[k]);
       if (P_b) TimesProjector(P_b, 3, PETSC_TRUE, &s->stiffness[9 * k]);
-      if (P_b && s->average) TimesProjector(P_b, 1, PETSC_TRUE, &s->ratio[3 * k]);
-      if (P_b && s->average) TimesProjector(P_b, 1, PETSC_TRUE, &s->coupling[3 * k]);
+      for (PetscInt m = s->n_laws * k; m < s->n_laws * (k + 1) && P_b && s->average; m++) {
+        TimesProjector(P_b, 1, PETSC_TRUE, &s->ratio[3 * m]);
+        TimesProjector(P_b, 1, PETSC_TRUE, &s->coupling[3 * m]);
+      }
       if (P_a) TimesProjector(P_a, 3, PETSC_FALSE, &s->stiffness[9 * k]);
       for (PetscInt i = 0; i < 9 && P_a && s->column[k] == a; i++) s->stiffness[9 * k + i] += held * ((i % 4 ? 0.0 : 1.0) - P_a[i]);
     }
@@ -326,13 +332,13 @@ static PetscErrorCode CreateMatrix(const TLEDAssembly *s, PetscInt n_i, PetscInt
 /* put blocks of n_i x n_k numbers into the rows of *A, created when it is NULL */
 static PetscErrorCode SetRows(const TLEDAssembly *s, PetscInt n_i, PetscInt n_k, const PetscReal value[], Mat *A)
 {
-  PetscInt   n_max = 0, *column, rows[3];
+  PetscInt   n_max = 0, *column, *rows;
   PetscReal *line;
 
   PetscFunctionBegin;
   if (!*A) PetscCall(CreateMatrix(s, n_i, n_k, A));
   for (PetscInt a = 0; a < s->last - s->first; a++) n_max = PetscMax(n_max, s->row[a + 1] - s->row[a]);
-  PetscCall(PetscMalloc2(n_k * n_max, &column, n_i * n_k * n_max, &line));
+  PetscCall(PetscMalloc3(n_k * n_max, &column, n_i * n_k * n_max, &line, n_i, &rows));
   for (PetscInt a = 0; a < s->last - s->first; a++) {
     const PetscInt first = s->row[a], n = s->row[a + 1] - first;
     for (PetscInt i = 0; i < n_i; i++) {
@@ -345,7 +351,7 @@ static PetscErrorCode SetRows(const TLEDAssembly *s, PetscInt n_i, PetscInt n_k,
     }
     PetscCall(MatSetValues(*A, n_i, rows, n_k * n, column, line, INSERT_VALUES));
   }
-  PetscCall(PetscFree2(column, line));
+  PetscCall(PetscFree3(column, line, rows));
   PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -358,9 +364,9 @@ static PetscErrorCode FormFactors(TLEDAssembly *s)
 
   PetscFunctionBegin;
   PetscCall(SetRows(s, 3, 3, s->stiffness, &s->own));
-  PetscCall(SetRows(s, 1, 3, s->ratio, &s->B));
-  PetscCall(SetRows(s, 1, 3, s->coupling, &s->C));
-  PetscCall(SetRows(s, 1, 1, s->pressure, &s->M));
+  PetscCall(SetRows(s, s->n_laws, 3, s->ratio, &s->B));
+  PetscCall(SetRows(s, s->n_laws, 3, s->coupling, &s->C));
+  PetscCall(SetRows(s, s->n_laws, s->n_laws, s->pressure, &s->M));
   PetscCall(MatMatMult(s->M, s->B, again, PETSC_DEFAULT, &s->MB));
   PetscCall(MatScale(s->MB, 0.5));
   PetscCall(MatAXPY(s->MB, 1.0, s->C, SUBSET_NONZERO_PATTERN));

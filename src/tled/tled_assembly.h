@@ -6,7 +6,7 @@
    The average nodal pressure element couples nodes three elements apart. Its tangent is assembled from matrices with the pattern of
    direct neighbours by sparse products:
      K = K_e + C^T B + B^T C + B^T M B = K_e + B^T D + D^T B,   D = C + 1/2 M B,
-     B = dJ_a/du (n_nodes x 3 n_nodes),  C_a = sum_e V0_e/4 d2w/dJbar dF : dF/du,  M_ab = sum_e V0_e/16 d2w/dJbar^2. */
+     B = dJ_a/du (n_nodes n_laws x 3 n_nodes: a node has an average for each material),  C_a = sum_e V0_e/4 d2w/dJbar dF : dF/du,  M_ab = sum_e V0_e/16 d2w/dJbar^2. */
 #ifndef BY_TLED_ASSEMBLY_H
 #define BY_TLED_ASSEMBLY_H
 
@@ -25,9 +25,10 @@ typedef struct TLEDAssembly {
   PetscInt  *column;      /* nodes                                                                     */
   PetscInt  *slot;        /* n_tets x corners^2: place of each block, -1 when its row is another rank's */
   PetscReal *stiffness;   /* 9 a block [N/m]                                                           */
-  PetscReal *ratio;       /* 3 a block: dJ_a/du_b [1/m]              (anp, exact)                       */
-  PetscReal *coupling;    /* 3 a block: C [N/m^0]                    (anp, exact)                       */
-  PetscReal *pressure;    /* 1 a block: M [N m]                      (anp, exact)                       */
+  PetscInt   n_laws;      /* materials                                                                  */
+  PetscReal *ratio;       /* n_laws x 3 a block: dJ_a/du_b [1/m]     (anp, exact)                       */
+  PetscReal *coupling;    /* n_laws x 3 a block: C [N/m^0]           (anp, exact)                       */
+  PetscReal *pressure;    /* n_laws x n_laws a block: M [N m]        (anp, exact)                       */
   PetscBool  average;     /* the last values have the parts of the average nodal pressure element      */
   Mat        own, B, C, M, MB, S; /* K_e, B, C, M, D and B^T D of the last matrix or operator          */
   Vec        nodal;       /* a number a node: work of the operator                                     */

@@ -82,7 +82,7 @@ static PetscErrorCode Renumber(TLEDMesh *mesh, const PetscInt part[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Walk the elements in order and close a block when its part ends or it is full, a pack when its material ends. With `blocks` NULL's arrays (n_* only) it counts;
+/* Walk the elements in order and close a block when its part or its material ends or it is full. With `blocks` NULL's arrays (n_* only) it counts;
    the second walk fills. local_of[a] and block_of[a] are work of n_nodes. */
 static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of[], int local_of[], TLEDBlocks *b, PetscBool fill)
 {
@@ -92,11 +92,11 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
   b->n_blocks = b->n_packs = b->n_slots = 0;
   for (PetscInt a = 0; a < mesh->n_nodes; a++) block_of[a] = -1;
   for (PetscInt e = 0; e < mesh->n_tets; e++) {
-    if (e == 0 || part[e] != part[e - 1] || n_in_block == n_max || n_nodes + n_corners > TLED_BLOCK_NODES) {
+    if (e == 0 || part[e] != part[e - 1] || mesh->material[e] != mesh->material[e - 1] || n_in_block == n_max || n_nodes + n_corners > TLED_BLOCK_NODES) {
       if (fill) b->pack_offset[b->n_blocks] = b->n_packs, b->node_offset[b->n_blocks] = b->n_slots;
       b->n_blocks++;
       n_in_block = n_nodes = lane = 0;
-    } else if (mesh->material[e] != mesh->material[e - 1]) lane = 0;
+    }
     if (lane == 0) {
       if (fill) b->material[b->n_packs] = (int)mesh->material[e];
       b->n_packs++;
@@ -106,7 +106,7 @@ static void FillBlocks(const TLEDMesh *mesh, const PetscInt part[], int block_of
       const PetscInt a = mesh->tets[n_corners * e + k];
       if (block_of[a] != b->n_blocks) {
         block_of[a] = b->n_blocks, local_of[a] = n_nodes++;
-        if (fill) b->node[b->n_slots] = (int)a;
+        if (fill) b->node[b->n_slots] = (int)a, b->slot_material[b->n_slots] = (int)mesh->material[e];
         b->n_slots++;
       }
       if (fill) b->local[(n_corners * (b->n_packs - 1) + k) * TLED_LANES + lane] = local_of[a];
@@ -220,7 +220,8 @@ PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks
   b->n_corners = (int)mesh->n_corners;
   b->n_points  = n_points;
   FillBlocks(mesh, part, block_of, local_of, b, PETSC_FALSE);
-  PetscCall(PetscMalloc3(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node));
+  PetscCall(PetscMalloc4(b->n_blocks + 1, &b->pack_offset, b->n_blocks + 1, &b->node_offset, b->n_slots, &b->node, b->n_slots,
+                         &b->slot_material));
   PetscCall(PetscCalloc3(b->n_corners * b->n_packs * TLED_LANES, &b->local, b->n_packs * TLED_LANES, &b->element,
                          n_points * b->n_packs * TLED_LANES, &b->V0));
   PetscCall(PetscMalloc1(b->n_packs, &b->material));
@@ -237,7 +238,7 @@ PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks
 PetscErrorCode TLEDBlocksDestroy_Private(TLEDBlocks *b)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree3(b->pack_offset, b->node_offset, b->node));
+  PetscCall(PetscFree4(b->pack_offset, b->node_offset, b->node, b->slot_material));
   PetscCall(PetscFree(b->material));
   PetscCall(PetscFree(b->fibre));
   PetscCall(PetscFree3(b->local, b->element, b->V0));

@@ -89,7 +89,7 @@ void TLEDPointAt_Private(const TLEDLoops *w, const PetscInt tets[], int lane, in
   for (int k = 0; k < 9; k++) p->seen[k] = p->H[k];
   if (w->ops->averaged && u) {
     double jbar = 0.0;
-    for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[corner[a]];
+    for (int a = 0; a < 4; a++) jbar += 0.25 * w->nodal[TLEDAverageOf(w, corner[a], b->material[lane / TLED_LANES])];
     (void)TLEDAverageGradient(p->H, 1.0 / (1.0 + p->jm1), 1.0 + jbar, p->seen);
   }
 }

@@ -42,7 +42,7 @@ BY_HD void TLEDNodalForces(const double P[9], const double G[9], double V0, doub
 }
 
 /* Average nodal pressure [Joldes09, variational form of method 3]: the element sees Fbar = r F, r = (Jbar/J)^(1/3), Jbar the mean of
-   its nodes' volume ratios J_a = sum_e V0_e J_e / sum_e V0_e. Energy sum_e V0_e W(Fbar_e); for a law W_iso(F) + U(J) this is
+   its nodes' volume ratios J_a = sum_e V0_e J_e / sum_e V0_e over the elements of its own material. Energy sum_e V0_e W(Fbar_e); for a law W_iso(F) + U(J) this is
    W_iso(F) + U(Jbar). Hbar = Fbar - I; r is returned. */
 BY_HD double TLEDAverageGradient(const double H[9], double inv_J, double Jbar, double Hbar[9])
 {

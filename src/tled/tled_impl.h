@@ -64,7 +64,7 @@ typedef struct {
   PetscInt64  *groups;   /* n_elements: bit g: it belongs to named group g    */
 } TLEDGmshFile;
 
-/* Elements in blocks, a block's elements in packs of TLED_LANES as structures of arrays; the elements of a pack are of one material. Each block adds up the forces on its own nodes
+/* Elements in blocks, a block's elements in packs of TLED_LANES as structures of arrays; the elements of a block are of one material. Each block adds up the forces on its own nodes
    in a fixed order; each node then adds its blocks in a fixed order: the same bits for any number of threads, no atomics. */
 typedef struct {
   int     n_blocks, n_packs, n_slots, n_nodes;
@@ -82,6 +82,7 @@ typedef struct {
   double *fibre;       /* n_packs x 3 x TLED_LANES: unit vector along the fibres, 0 for none     */
   int    *slot_offset; /* n_nodes + 1                                                            */
   int    *slot;        /* n_slots: the slots of each node                                        */
+  int    *slot_material; /* n_slots: number of the law of the slot's block                       */
 } TLEDBlocks;
 
 typedef struct _TLEDElementOps TLEDElementOps;
@@ -102,11 +103,15 @@ typedef struct {
   double           *history;        /* what has been, of all packs with such a material [Pa]        */
   size_t           *history_offset; /* n_packs                                                      */
   double           *partial;     /* n_slots x 3: forces of a block on its nodes [N]                */
-  double           *nodal;       /* n_nodes: J_a - 1, then q_a [Pa] (anp)                          */
-  double           *pressure;    /* n_nodes (anp)                                                  */
-  double           *weight;      /* n_nodes: 1/sum_e V0_e [1/m^3] (anp)                            */
+  double           *nodal;       /* n_nodes x n_laws: J_a - 1 of the elements of each material (anp) */
+  double           *pressure;    /* n_nodes x n_laws: q_a [Pa] (anp)                               */
+  double           *weight;      /* n_nodes x n_laws: 1/sum_e V0_e [1/m^3], 0 for none (anp)       */
   int              *status;      /* n_blocks: 1 where an element has det F <= 0 or NaN             */
 } TLEDLoops;
+
+/* place of a node's average over the elements of a material around it, in nodal, pressure and weight: materials do not share volume
+   changes, whose pressures differ by the ratio of their stiffnesses */
+static inline PetscInt TLEDAverageOf(const TLEDLoops *loops, PetscInt node, int material) { return loops->n_laws * node + material; }
 
 /* An element: what the loops over the body ask of it. One for each kind, in tled_element.c; the loops of a backend fill `forces`. */
 struct _TLEDElementOps {

@@ -177,16 +177,17 @@ void TLEDForcesT4_OpenMP(const TLEDLoops *w, const double u[])
   }
 }
 
-/* a nodal average from the blocks' partial sums (column k of partial): value_a = weight_a sum, weight 1/sum of V0 */
+/* nodal averages, one for each material, from the blocks' partial sums: value = weight sum, weight 1/sum of V0 */
 static void GatherAverage(const TLEDLoops *w, double factor, double value[])
 {
   const TLEDBlocks *b = w->blocks;
 
 #pragma omp for schedule(static)
   for (int a = 0; a < b->n_nodes; a++) {
-    double sum = 0.0;
-    for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++) sum += w->partial[3 * b->slot[k]];
-    value[a] = factor * w->weight[a] * sum;
+    double *sum = &value[w->n_laws * a];
+    for (int m = 0; m < w->n_laws; m++) sum[m] = 0.0;
+    for (int k = b->slot_offset[a]; k < b->slot_offset[a + 1]; k++) sum[b->slot_material[b->slot[k]]] += w->partial[3 * b->slot[k]];
+    for (int m = 0; m < w->n_laws; m++) sum[m] *= factor * w->weight[w->n_laws * a + m];
   }
 }
 
@@ -197,11 +198,13 @@ static void AddValues(const int local[], const double value[], Scratch *s)
     for (int a = 0; a < 4; a++) s->f[local[a * L + l]][0] += value[l];
 }
 
-static void LoadValues(const TLEDBlocks *b, int block, const double from[], double to[])
+static void LoadValues(const TLEDLoops *w, int block, const double from[], double to[])
 {
-  const int *node = b->node + b->node_offset[block], n = b->node_offset[block + 1] - b->node_offset[block];
+  const TLEDBlocks *b = w->blocks;
+  const int        *node = b->node + b->node_offset[block], n = b->node_offset[block + 1] - b->node_offset[block];
 
-  for (int a = 0; a < n; a++) to[a] = from[node[a]];
+  from += b->material[b->pack_offset[block]];
+  for (int a = 0; a < n; a++) to[a] = from[w->n_laws * node[a]];
 }
 
 /* nodal volume ratios J_a - 1 */
@@ -341,8 +344,8 @@ INLINE void PassAverage(int forces, const TLEDLoops *w, const double u[])
     Pack    p;
     double  f[12][L] __attribute__((aligned(64))), jbar[L], pbar[L], nodal[L];
     LoadNodes(b, block, u, &s);
-    LoadValues(b, block, w->nodal, s.value[0]);
-    if (forces) LoadValues(b, block, w->pressure, s.value[1]);
+    LoadValues(w, block, w->nodal, s.value[0]);
+    if (forces) LoadValues(w, block, w->pressure, s.value[1]);
     ClearForces(b, block, &s);
     for (int pack = b->pack_offset[block]; pack < b->pack_offset[block + 1]; pack++) {
       const int    *local = b->local + 4 * L * pack;

@@ -35,7 +35,6 @@ typedef struct {
   PetscReal *external, *held, *offset; /* external forces; supports' displacement, and how far u was from it at the start */
   PetscReal *start, *mode;             /* u at the start; highest mode                                                 */
   PetscReal *mass;                     /* fictitious, n_nodes                                                          */
-  PetscReal *share;                    /* n_tets, see ShareBulk(); NULL where volumes are not averaged                 */
   PetscReal  from, to;                 /* time of the start and the end [s]                                            */
   PetscReal  stretch[2];               /* smallest det F and largest |F|^2 when the masses were made                   */
   PetscReal  residual;                 /* |r| over the forces it is made of                                            */
@@ -47,44 +46,6 @@ typedef struct {
   PetscInt   best_step, calm;          /* when; steps since all is below the tolerance                                 */
   PetscBool  by_peaks;                 /* kinetic damping                                                              */
 } Relax;
-
-/* Where volumes are averaged, a stiff material resists the volume changes of its neighbours too. share[e]: how much larger than its own
-   first Lame constant the mean over an element's nodes of their elements' is [Pa]. Such a body is not stiffer than one of plain elements
-   with these constants, by Jensen's inequality twice (the elements' J are averages of nodal ones, which are averages). */
-static PetscErrorCode ShareBulk(TLED tled, PetscReal share[])
-{
-  const TLEDBlocks *b     = &tled->blocks;
-  const PetscInt    n     = tled->mesh.n_corners;
-  PetscReal        *nodal = tled->trial; /* not in use here */
-
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(nodal, tled->mesh.n_nodes));
-  for (int l = 0; l < TLED_LANES * b->n_packs; l++)
-    for (PetscInt i = 0; i < n && b->element[l] >= 0; i++)
-      nodal[tled->mesh.tets[n * b->element[l] + i]] += b->V0[l] * TLEDLambda(&tled->laws[b->material[l / TLED_LANES]]);
-  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) nodal[a] *= tled->loops.weight[a];
-  for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
-    PetscReal mean = 0.0;
-    if (b->element[l] < 0) continue;
-    for (PetscInt i = 0; i < n; i++) mean += nodal[tled->mesh.tets[n * b->element[l] + i]] / (PetscReal)n;
-    share[b->element[l]] = PetscMax(0.0, mean - TLEDLambda(&tled->laws[b->material[l / TLED_LANES]]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* add `bulk` y y^T, y_a = B G_a, to the stiffness of an element of one integration point */
-static void AddBulk(TLED tled, int lane, PetscReal bulk, const PetscReal u[], double K[])
-{
-  const int n = tled->loops.ops->n_corners;
-  TLEDPoint p;
-  double    B[9], y[3 * TLED_CORNERS_MAX];
-
-  TLEDPointAt_Private(&tled->loops, tled->mesh.tets, lane, 0, u, &p);
-  TLEDBulkDirection(p.law.law, p.seen, B);
-  for (int a = 0; a < n; a++) Mul3(B, &p.G[3 * a], &y[3 * a]);
-  for (int i = 0; i < 3 * n; i++)
-    for (int j = 0; j < 3 * n; j++) K[3 * n * i + j] += bulk * p.V0 * y[i] * y[j];
-}
 
 /* sum_b |K_ab| of an element's nodes, Frobenius norms */
 static void AddRows(PetscInt n, const double K[], const PetscInt node[], PetscReal sum[])
@@ -119,7 +80,6 @@ static PetscErrorCode MakeMasses(TLED tled, Relax *x, PetscInt n_steps)
     const int e = b->element[l];
     if (e < 0) continue;
     TLEDStiffnessAt_Private(tled, l, x->u, K);
-    if (x->share && x->share[e] > 0.0) AddBulk(tled, l, x->share[e], x->u, K);
     AddRows(n, K, &tled->mesh.tets[n * e], x->mass);
   }
   ByCall(TLEDHighestMode_Private(tled, x->mass, x->u, n_steps, x->mode, &top));
@@ -359,10 +319,6 @@ PetscErrorCode TLEDRelax(TLED tled, PetscReal time, PetscReal tolerance, PetscIn
   PetscCall(PetscMalloc6(n, &x.v, n, &x.r, n, &x.last, n, &x.pull, n, &x.external, n / 3, &x.mass));
   PetscCall(PetscMalloc4(n, &x.held, n, &x.offset, n, &x.start, n, &x.mode));
   PetscCall(PetscArrayzero(x.mode, n));
-  if (tled->loops.ops->averaged) {
-    PetscCall(PetscMalloc1(tled->mesh.n_tets, &x.share));
-    PetscCall(ShareBulk(tled, x.share));
-  }
   x.from = tled->state.time, x.to = time;
   PetscCall(VecGetArray(tled->u, &x.u));
   TLEDSetViscous_Private(tled, TLED_VISCOUS_STEP, PETSC_MAX_REAL); /* at rest, everything has relaxed */
@@ -375,7 +331,6 @@ PetscErrorCode TLEDRelax(TLED tled, PetscReal time, PetscReal tolerance, PetscIn
   tled->state.is_static = 1.0;
   tled->state.critical  = 0.0;
   PetscCall(PetscFree6(x.v, x.r, x.last, x.pull, x.external, x.mass));
-  PetscCall(PetscFree(x.share));
   PetscCall(PetscFree4(x.held, x.offset, x.start, x.mode));
   if (steps) *steps = taken;
   if (residual) *residual = x.residual;

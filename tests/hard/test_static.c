@@ -208,12 +208,12 @@ static void OneLayer_ThinPlate(void **state)
 }
 
 /* Half of a bar is a million times as stiff as the other: relaxation takes about as long as for a bar of the soft stuff alone, and the
-   answer is the implicit one. With averaged volumes the stiff half's bulk reaches two layers of elements into the soft one, where the
-   masses that this takes make it slower. */
+   answer is the implicit one. Averaged volumes bend the soft half more easily than plain elements do, which takes averages that the
+   materials do not share: with one for both the stiff half holds two layers of elements of the soft one. */
 static void StiffnessContrast_OfAMillion(void **state)
 {
   const PetscReal side[3]   = {0.0, 0.0, -0.6};
-  const double    allowed[] = {0.0, 3.0, 30.0, 3.0}; /* steps */
+  double          t4 = 0.0;
 
   (void)state;
   for (int element = TLED_ELEMENT_T4; element <= TLED_ELEMENT_T10; element++) {
@@ -241,9 +241,10 @@ static void StiffnessContrast_OfAMillion(void **state)
     Solve(body[0], 0.0);
     steps[0] = Relax(body[1], 0.0);
     steps[1] = Relax(body[2], 0.0);
-    HardBetween(name, "deflection over length", -MeanOf(body[0], "xmax", 2) / 0.4, 0.03, 0.5);
+    if (element == TLED_ELEMENT_T4) t4 = MeanOf(body[0], "xmax", 2);
+    HardBetween(name, "deflection over that of t4", MeanOf(body[0], "xmax", 2) / t4, element == TLED_ELEMENT_T4 ? 1.0 : 1.1, 1.6);
     Hard(name, "relaxed against implicit", Difference(body[1], body[0]), 1e-6);
-    Hard(name, "steps of relaxation over those of the soft stuff alone", (double)steps[0] / (double)steps[1], allowed[element]);
+    Hard(name, "steps of relaxation over those of the soft stuff alone", (double)steps[0] / (double)steps[1], 3.0);
     for (int i = 0; i < 3; i++) assert_petsc(TLEDDestroy(&body[i]));
   }
 }

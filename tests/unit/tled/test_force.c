@@ -1,5 +1,5 @@
 /* Forces of a whole mesh: patch test, rigid motion, gradient of the energy, tangent; for both elements and all laws. */
-#include "unit/tled/body.h"
+#include "unit/tled/block.h"
 #include "unit/tled/patch_reference.h"
 
 #define ROUND 1e-12 /* of the largest force: sums of a few dozen corners */
@@ -107,65 +107,94 @@ static void RigidMotion_GivesNoForce(void **state)
   }
 }
 
-/* f = dW/du along a direction; K = df/du for t4; both by central differences */
+/* f = dW/du along a direction and K = df/du at a wavy displacement, by central differences */
+static void CheckDerivatives(TLED tled)
+{
+  const PetscReal eps = 1e-6;
+  Vec             u, u0, d, f, up, down, Kd;
+  Mat             K = NULL;
+  PetscReal       work, slope, size, error;
+  PetscBool       symmetric;
+  TLEDStats       s1, s2;
+  PetscRandom     random;
+
+  assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
+  assert_petsc(VecDuplicate(u, &u0));
+  assert_petsc(VecDuplicate(u, &d));
+  assert_petsc(VecDuplicate(u, &f));
+  assert_petsc(VecDuplicate(u, &up));
+  assert_petsc(VecDuplicate(u, &down));
+  assert_petsc(VecDuplicate(u, &Kd));
+  SetVec(tled, u0, Wavy);
+  assert_petsc(PetscRandomCreate(PETSC_COMM_SELF, &random));
+  assert_petsc(VecSetRandom(d, random));
+  assert_petsc(PetscRandomDestroy(&random));
+  assert_petsc(TLEDInternalForce(tled, u0, f));
+  assert_petsc(VecDot(f, d, &work));
+  assert_petsc(VecWAXPY(u, eps, d, u0));
+  assert_petsc(TLEDGetStats(tled, &s1));
+  assert_petsc(TLEDInternalForce(tled, u, up));
+  assert_petsc(VecWAXPY(u, -eps, d, u0));
+  assert_petsc(TLEDGetStats(tled, &s2));
+  assert_petsc(TLEDInternalForce(tled, u, down));
+  slope = (s1.strain - s2.strain) / (2 * eps);
+  assert_close(slope, work, 1e-7, work); /* round-off of the energies over the step: 1e-16 W/eps */
+  assert_petsc(TLEDTangent(tled, u0, &K));
+  assert_petsc(TLEDTangent(tled, u0, &K)); /* the second call writes into the same matrix */
+  assert_petsc(MatMult(K, d, Kd));
+  assert_petsc(VecAXPY(up, -1.0, down));
+  assert_petsc(VecScale(up, 1.0 / (2 * eps)));
+  assert_petsc(VecNorm(up, NORM_2, &size));
+  assert_petsc(VecAXPY(up, -1.0, Kd));
+  assert_petsc(VecNorm(up, NORM_2, &error));
+  assert_close(error, 0.0, 1e-8, size);
+  assert_petsc(MatIsSymmetric(K, 1e-6, &symmetric)); /* absolute, N/m; entries are about 1e6 */
+  assert_true(symmetric);
+  assert_petsc(MatDestroy(&K));
+  assert_petsc(VecDestroy(&u0));
+  assert_petsc(VecDestroy(&d));
+  assert_petsc(VecDestroy(&f));
+  assert_petsc(VecDestroy(&up));
+  assert_petsc(VecDestroy(&down));
+  assert_petsc(VecDestroy(&Kd));
+  assert_petsc(TLEDDestroy(&tled));
+}
+
 static void ForceAndTangent_AreDerivatives(void **state)
 {
   (void)state;
   for (int law = 0; law < TLED_LAWS; law++) {
     for (int element = TLED_ELEMENT_T4; element <= TLED_ELEMENT_ANP; element++) {
-      const PetscReal eps = 1e-6;
-      TLEDParams     *p;
-      TLED            tled = Cube(law, element, &p);
-      Vec             u, u0, d, f, up, down, Kd;
-      Mat             K = NULL;
-      PetscReal       work, slope, size, error;
-      PetscBool       symmetric;
-      TLEDStats       s1, s2;
-      PetscRandom     random;
-
-      assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
-      assert_petsc(VecDuplicate(u, &u0));
-      assert_petsc(VecDuplicate(u, &d));
-      assert_petsc(VecDuplicate(u, &f));
-      assert_petsc(VecDuplicate(u, &up));
-      assert_petsc(VecDuplicate(u, &down));
-      assert_petsc(VecDuplicate(u, &Kd));
-      SetVec(tled, u0, Wavy);
-      assert_petsc(PetscRandomCreate(PETSC_COMM_SELF, &random));
-      assert_petsc(VecSetRandom(d, random));
-      assert_petsc(PetscRandomDestroy(&random));
-      assert_petsc(TLEDInternalForce(tled, u0, f));
-      assert_petsc(VecDot(f, d, &work));
-      assert_petsc(VecWAXPY(u, eps, d, u0));
-      assert_petsc(TLEDGetStats(tled, &s1));
-      assert_petsc(TLEDInternalForce(tled, u, up));
-      assert_petsc(VecWAXPY(u, -eps, d, u0));
-      assert_petsc(TLEDGetStats(tled, &s2));
-      assert_petsc(TLEDInternalForce(tled, u, down));
-      slope = (s1.strain - s2.strain) / (2 * eps);
-      assert_close(slope, work, 1e-7, work); /* round-off of the energies over the step: 1e-16 W/eps */
-      assert_petsc(TLEDTangent(tled, u0, &K));
-      assert_petsc(TLEDTangent(tled, u0, &K)); /* the second call writes into the same matrix */
-      assert_petsc(MatMult(K, d, Kd));
-      assert_petsc(VecAXPY(up, -1.0, down));
-      assert_petsc(VecScale(up, 1.0 / (2 * eps)));
-      assert_petsc(VecNorm(up, NORM_2, &size));
-      assert_petsc(VecAXPY(up, -1.0, Kd));
-      assert_petsc(VecNorm(up, NORM_2, &error));
-      assert_close(error, 0.0, 1e-8, size);
-      assert_petsc(MatIsSymmetric(K, 1e-6, &symmetric)); /* absolute, N/m; entries are about 1e6 */
-      assert_true(symmetric);
-      assert_petsc(MatDestroy(&K));
-      assert_petsc(VecDestroy(&u0));
-      assert_petsc(VecDestroy(&d));
-      assert_petsc(VecDestroy(&f));
-      assert_petsc(VecDestroy(&up));
-      assert_petsc(VecDestroy(&down));
-      assert_petsc(VecDestroy(&Kd));
-      assert_petsc(TLEDDestroy(&tled));
+      TLEDParams *p;
+      CheckDerivatives(Cube(law, element, &p));
     }
   }
 }
 
+/* two materials that share nodes, whose averages they do not share */
+static void ForceAndTangentOfTwoMaterials_AreDerivatives(void **state)
+{
+  const Block block = {.n = {4, 2, 2}, .size = {1.0, 1.0, 1.0}, .order = 1, .n_lower = 2};
+
+  (void)state;
+  for (int element = TLED_ELEMENT_T4; element <= TLED_ELEMENT_ANP; element++) {
+    TLEDParams        *p;
+    TLEDMaterialParams stiff;
+    TLED               tled = NewBlock(&block, &p);
+
+    p->element         = element;
+    stiff              = p->elastic;
+    stiff.material     = TLED_MATERIAL_NEO_HOOKEAN_ISO;
+    stiff.poisson      = 0.49;
+    stiff.young        = 7.0 * p->elastic.young;
+    AddName(&stiff.volumes, "lower");
+    assert_petsc(TLEDAddMaterial(tled, "stiff", &stiff));
+    assert_petsc(TLEDSetUp(tled));
+    RemoveBlock(p);
+    CheckDerivatives(tled);
+  }
+}
+
 CHECK_MAIN(cmocka_unit_test(PatchTest_GivesTheUniformStress), cmocka_unit_test(RigidMotion_GivesNoForce),
-           cmocka_unit_test(ForceAndTangent_AreDerivatives))
+           cmocka_unit_test(ForceAndTangent_AreDerivatives),
+           cmocka_unit_test(ForceAndTangentOfTwoMaterials_AreDerivatives))
