@@ -250,6 +250,25 @@ double TLEDContactRate_Private(TLED tled, const double mass[])
   return most;
 }
 
+/* Is every node still on the side of the obstacles' surfaces where it was, when it goes from u to x in one step? One that goes farther than
+   it can look, or comes to lie deeper, could have passed one. */
+PetscBool TLEDContactKeepsSides_Private(TLED tled, const double u[], const double x[])
+{
+  const TLEDContact *c        = &tled->contact;
+  PetscBool          surfaces = PETSC_FALSE;
+  double             deep     = 0.0;
+
+  for (PetscInt i = 0; i < c->n; i++) surfaces = (PetscBool)(surfaces || c->item[i].index);
+  for (PetscInt a = 0; a < tled->mesh.n_nodes && surfaces; a++) {
+    double way[3];
+    Sub3(&x[3 * a], &u[3 * a], way);
+    if (c->area[a] > 0.0 && Norm3(way) > DEEPEST * c->reach) return PETSC_FALSE;
+    (void)TLEDContactAt_Private(tled, a, &x[3 * a], NULL, NULL, &deep);
+    if (deep > 0.0) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 /* write the breakdown message of a node that has passed an obstacle's surface, or was about to; returns BY_ERR_BREAKDOWN */
 PetscErrorCode TLEDContactReport_Private(TLED tled, const PetscReal u[], PetscReal time)
 {

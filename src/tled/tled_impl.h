@@ -353,6 +353,7 @@ PetscErrorCode TLEDContactDestroy_Private(TLEDContact *contact);
 double         TLEDContactAt_Private(TLED tled, PetscInt node, const double u[3], double f[3], double K[9], double *deep);
 double         TLEDContactEnergy_Private(TLED tled, const double u[]);
 double         TLEDContactRate_Private(TLED tled, const double mass[]); /* [1/s^2] */
+PetscBool      TLEDContactKeepsSides_Private(TLED tled, const double u[], const double x[]);
 PetscErrorCode TLEDContactReport_Private(TLED tled, const PetscReal u[], PetscReal time);
 /* f(u), raw arrays; returns BY_ERR_BREAKDOWN (with no message) when an element is broken */
 PetscErrorCode TLEDForces_Private(TLED tled, const PetscReal u[], PetscReal f[]);

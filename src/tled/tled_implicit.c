@@ -118,7 +118,7 @@ PetscErrorCode TLEDImplicitDestroy(TLEDImplicit *implicit)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal Norm(PetscInt n, const PetscReal x[])
+PetscReal TLEDImplicitNorm_Private(PetscInt n, const PetscReal x[])
 {
   PetscReal sum = 0.0;
 
@@ -171,7 +171,7 @@ PetscErrorCode TLEDImplicitResidual_Private(TLEDImplicit im, const PetscReal x[]
     r[k] = im->f_int[k] - im->f_ext[k] + m;
     inertia += m * m;
   }
-  im->scale = Norm(n, im->f_int) + Norm(n, im->f_ext) + PetscSqrtReal(inertia) + ROUND_OFF * im->held * Norm(n, x);
+  im->scale = TLEDImplicitNorm_Private(n, im->f_int) + TLEDImplicitNorm_Private(n, im->f_ext) + PetscSqrtReal(inertia) + ROUND_OFF * im->held * TLEDImplicitNorm_Private(n, x);
   for (PetscInt a = 0; a < im->tled->mesh.n_nodes; a++) {
     const PetscReal *P = TLEDConstraintProjector_Private(im->tled, a);
     PetscReal        d[3], free_d[3], free_r[3];
@@ -479,7 +479,7 @@ PetscErrorCode TLEDImplicitSetUp_Private(TLEDImplicit im)
 . x - first guess, then the solution, all nodes, the same on every rank
 
   Output Parameter:
-. converged - false leaves x without meaning
+. converged - false leaves x without meaning; also when a node went so far that it could have passed an obstacle's surface
 
   When the linear solver for positive matrices fails, GMRES is tried from the same guess.
 */
@@ -512,6 +512,7 @@ PetscErrorCode TLEDImplicitNewton_Private(TLEDImplicit im, PetscReal x[], PetscB
     PetscCall(VecGetArrayRead(im->everywhere, &all));
     PetscCall(PetscArraycpy(x, all, 3 * im->tled->mesh.n_nodes));
     PetscCall(VecRestoreArrayRead(im->everywhere, &all));
+    *converged = TLEDContactKeepsSides_Private(im->tled, im->problem.u0, x);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,8 +8,8 @@
 #define PAST 4 /* residuals of Newton's method that are looked back at */
 
 /* What is solved for the displacement x:
-     inertia M x + damping M x + f_int(y) - f_ext(time, y) + constant = 0,   y = share x + (1 - share) u0,
-   in the free directions, and x = held_at in the others. Static: share 1, inertia 0. */
+     inertia M (x - u0) + f_int(y) - f_ext(time, y) + constant = 0,   y = share x + (1 - share) u0,
+   in the free directions, and x = held_at in the others. Static: share 1, inertia 0 (or a drag). */
 typedef struct {
   PetscReal time;       /* of loads [s]                                                            */
   PetscReal share;      /* of the new displacement in that at which forces are taken, 1 - alpha_f  */
@@ -49,6 +49,7 @@ struct _n_TLEDImplicit {
 };
 
 /* tled_implicit.c */
+PetscReal      TLEDImplicitNorm_Private(PetscInt n, const PetscReal x[]);
 PetscErrorCode TLEDImplicitSetUp_Private(TLEDImplicit im);
 PetscErrorCode TLEDImplicitNewton_Private(TLEDImplicit im, PetscReal x[], PetscBool *converged);
 PetscErrorCode TLEDImplicitLinear_Private(TLEDImplicit im, const PetscReal x[], const PetscReal rhs[], PetscReal dx[], PetscBool *solved);

@@ -5,6 +5,12 @@
 #define EASY 6   /* Newton iterations of a step after which the next may be twice as long */
 #define FINE 1e-6 /* of a prescribed move: how far it is tried to find what the body answers to first order */
 
+#define SETTLE_STEPS 100  /* of settling, tries included                                                  */
+#define BEGIN        0.1  /* drag at the first step of settling, times stiffness over mass of a mean node */
+#define FIRMEST      1e3  /* drag at which settling is given up, in the same measure                      */
+#define FAINTEST     1e-9 /* drag that is not made less                                                   */
+#define LESS         0.1  /* drag after an easy step over that before it                                  */
+
 /* What leads from the start to the end. */
 typedef struct {
   PetscReal  t_start, t_end;
@@ -91,12 +97,61 @@ static PetscErrorCode Guess(TLEDImplicit im, const PetscReal u[], const PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Go to the problem's equilibrium as a body in a very viscous fluid would: f_int - f_ext + drag M (x - u) = 0, again and again with less and less
+   drag, each solved by Newton's method. It finds the way to a stable equilibrium where the tangent is singular (a body that only contact will
+   hold, and that does not touch yet) and where it is not positive (a body that snaps to another form). */
+static PetscErrorCode Settle(TLEDImplicit im, const PetscReal u[], PetscReal x[], PetscBool *converged)
+{
+  TLEDImplicitProblem *q    = &im->problem;
+  const PetscInt       n    = 3 * im->tled->mesh.n_nodes;
+  const PetscReal      unit = im->held * (PetscReal)(n / 3) / im->tled->mass_total;
+  PetscReal            drag = BEGIN * unit;
+  PetscErrorCode       ierr;
+
+  PetscFunctionBegin;
+  *converged = PETSC_FALSE;
+  for (PetscInt step = 0; step < SETTLE_STEPS && !*converged && drag <= FIRMEST * unit; step++) {
+    const PetscInt before = im->stats.newton;
+    PetscBool      moved;
+    q->inertia = drag;
+    PetscCall(PetscArraycpy(x, q->u0, n));
+    PetscCall(Hold(im, x));
+    PetscCall(TLEDImplicitNewton_Private(im, x, &moved));
+    if (!moved) {
+      drag /= LESS;
+      continue;
+    }
+    PetscCall(PetscArraycpy(q->u0, x, n));
+    q->inertia = 0.0;
+    ierr       = TLEDImplicitResidual_Private(im, x, im->residual);
+    if (ierr == BY_ERR_BREAKDOWN) break;
+    PetscCall(ierr);
+    *converged = TLEDImplicitNorm_Private(n, im->residual) <= im->params.tolerance * im->scale ? PETSC_TRUE : PETSC_FALSE;
+    if (im->stats.newton - before <= EASY) drag = PetscMax(LESS * drag, FAINTEST * unit);
+  }
+  q->inertia = 0.0;
+  PetscCall(PetscArraycpy(q->u0, u, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* one load step from u, `last` the one before it (ratio 0: there is none); with `settle` the body is let go there when Newton's method fails */
+static PetscErrorCode LoadStep(TLEDImplicit im, const PetscReal u[], const PetscReal last[], PetscReal ratio, PetscBool settle, PetscReal x[],
+                               PetscBool *converged)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(im->problem.u0, u, 3 * im->tled->mesh.n_nodes));
+  PetscCall(Guess(im, u, last, ratio, x));
+  PetscCall(TLEDImplicitNewton_Private(im, x, converged));
+  if (!*converged && settle) PetscCall(Settle(im, u, x, converged));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* load steps from u to the end; u is the last equilibrium found, part where it is */
 static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], PetscReal *part)
 {
   const PetscInt n    = 3 * im->tled->mesh.n_nodes;
   PetscReal     *last = im->last, *x = im->trial, s = 0.0, ds = im->params.load_step, ds_last = 0.0;
-  PetscBool      converged;
+  PetscBool      converged, settle;
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(last, u, n));
@@ -105,8 +160,8 @@ static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], 
     const PetscInt  before = im->stats.newton;
     *part = s;
     PetscCall(SetPart(im, way, next));
-    PetscCall(Guess(im, u, last, ds_last > 0.0 ? (next - s) / ds_last : 0.0, x));
-    PetscCall(TLEDImplicitNewton_Private(im, x, &converged));
+    settle = im->tled->contact.n || 0.5 * (next - s) < im->params.load_step_min ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(LoadStep(im, u, last, ds_last > 0.0 ? (next - s) / ds_last : 0.0, settle, x, &converged));
     if (!converged) {
       im->stats.cuts++;
       ds = 0.5 * (next - s);
@@ -134,7 +189,8 @@ static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], 
 
   The way there has a parameter s from 0 to 1: f_int(u) = f_ext(t(s), u) - (1 - s) (f_ext - f_int at the start), with the prescribed
   displacements of t(s) treated alike. Each load step is solved by Newton's method with a line search; one that fails, or that turns
-  an element inside out, is tried again with half the step.
+  an element inside out, is tried again with half the step; at contact, or when steps become too short, the body is first let settle, by
+  implicit steps of the motion in a very viscous fluid.
 
   Errors: BY_ERR_BREAKDOWN when steps become shorter than load_step_min; TLEDGetBreakdown() tells how far the load went
 
