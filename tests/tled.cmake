@@ -15,6 +15,7 @@ byssus_test(unit/tled/test_breakdown base tled)
 byssus_test(unit/tled/test_mesh base tled)
 byssus_test(unit/tled/test_t10 base tled)
 byssus_test(unit/tled/test_t10_body base tled)
+byssus_test(unit/tled/test_device_loops base tled)
 
 # in time, against another code; prints the table of docs/verification/solid.md
 byssus_test(convergence/test_tled_reference base tled)

@@ -1,21 +1,20 @@
-/* tled_device.h - the T4 forces on a GPU: what the CUDA loops take (plain C, no PETSc) and the object that feeds them. */
+/* tled_device.h - the forces of all elements on a GPU: the passes of the CUDA loops (plain C, no PETSc) and the object that feeds
+   them. Materials with a Prony series stay on the CPU. */
 #ifndef BY_TLED_DEVICE_H
 #define BY_TLED_DEVICE_H
 
-#include "tled/tled_material.h"
+#include "tled/tled_device_loops.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* All pointers are on the device; each call returns a CUDA status, 0 = done. Lanes are those of TLEDBlocks, padding included. */
+/* All pointers in `threads` are on the device; both return a CUDA status, 0 = done. */
 
-/* Forces of the elements, of the law material[lane / 8] with its fibres (NULL: no law has any), on their corners: corner_force[12 lane + 3 a + i] [N] at displacement u [m], n_nodes x 3. */
-int TLEDElementForces_CUDA(const TLEDLaw laws[], const int material[], int n_lanes, const int corner[], const double G[],
-                           const double V0[], const double fibre[], const double u[], double corner_force[]);
-
-/* f[3 a + i] = sum of the corners list[offset[a]] ... list[offset[a+1] - 1] of node a, in that order: no atomics. Waits for the end. */
-int TLEDGatherForces_CUDA(int n_nodes, const int offset[], const int list[], const double corner_force[], double f[]);
+/* start all threads of a pass, after those of the passes before it */
+int TLEDPass_CUDA(const TLEDThreads *threads, int pass);
+/* wait for the end of all passes */
+int TLEDWait_CUDA(void);
 
 #ifdef __cplusplus
 }
@@ -25,10 +24,16 @@ int TLEDGatherForces_CUDA(int n_nodes, const int offset[], const int list[], con
 
 typedef struct _TLEDDevice *TLEDDevice;
 
-/* copy what the forces of `tled` (set up, element t4) need to the device; PETSC_ERR_SUP without CUDA */
+/* runs all threads of a pass; 0 = done */
+typedef int (*TLEDPassRun)(const TLEDThreads *threads, int pass);
+
+/* Copy what the forces of `tled` (set up) need into arrays for the device.
+   Errors: PETSC_ERR_SUP when a material has a Prony series */
 BY_EXTERN PetscErrorCode TLEDDeviceCreate(TLED tled, TLEDDevice *device);
-/* f(u) on the device; host arrays, n_nodes x 3 */
+/* f(u) on the device; host arrays, n_nodes x 3. An inverted element is not looked for. PETSC_ERR_SUP without CUDA */
 BY_EXTERN PetscErrorCode TLEDDeviceForces(TLEDDevice device, const PetscReal u[], PetscReal f[]);
+/* the same passes over the same arrays on the host, run by `run`: whoever has no device checks the loops with it */
+BY_EXTERN PetscErrorCode TLEDDeviceForcesOnHost(TLEDDevice device, TLEDPassRun run, const PetscReal u[], PetscReal f[]);
 BY_EXTERN PetscErrorCode TLEDDeviceDestroy(TLEDDevice *device);
 #endif
 

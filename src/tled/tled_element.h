@@ -1,5 +1,5 @@
 /* tled_element.h - the four-node tetrahedron: displacement gradient, nodal forces, stiffness, and the modified gradient of the
-   average nodal pressure element. For host and device; the loops are in tled_openmp.c and tled_cuda.cu.
+   average nodal pressure element. For host and device; the loops are in tled_openmp.c and tled_device_loops.h.
 
    An element carries G, the reference gradients dN_a/dX [1/m] of its nodes a = 1, 2, 3 (3 x 3, row a - 1); that of node 0 is minus
    their sum. V0 is its reference volume [m^3]. */

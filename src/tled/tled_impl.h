@@ -6,6 +6,7 @@
 #include "tled/tled_constraint.h"
 #include "tled/tled_step.h"
 #include "tled/tled_element.h"
+#include "tled/tled_t10.h"
 #include "surface.h"
 #include <petsc/private/petscimpl.h>
 
@@ -291,7 +292,7 @@ void           TLEDPointAt_Private(const TLEDLoops *loops, const PetscInt tets[]
 /* number of the stored Jacobian of a point of a pack of ten-node elements */
 static inline int TLEDJacobianPlace(const TLEDBlocks *b, int pack, int point)
 {
-  return b->first_point[pack] + (b->first_point[pack + 1] - b->first_point[pack] == 1 ? 0 : point);
+  return TLEDJacobianNumber(b->first_point, pack, point);
 }
 /* tled_blocks.c */
 PetscErrorCode TLEDBlocksCreate_Private(TLEDMesh *mesh, int n_points, TLEDBlocks *blocks);

@@ -1,5 +1,5 @@
 /* tled_t10.h - the ten-node tetrahedron: quadrature, shape functions, slopes, nodal forces and lumped mass. For host and device; the
-   loops are in tled_openmp_t10.c.
+   loops are in tled_openmp_t10.c and tled_device_loops.h.
 
    Nodes in VTK's order: vertices 0 to 3, then the edges 01, 12, 02, 03, 13, 23. L_0 = 1 - xi_1 - xi_2 - xi_3, L_k = xi_k are the
    barycentric coordinates; with them N_v = L_v (2 L_v - 1) at vertices and N_vw = 4 L_v L_w on edges [Zienkiewicz, Taylor & Zhu, The
@@ -144,6 +144,12 @@ BY_HD double TLEDJacobianT10(const double L[4], const double X[30], double Jinv[
     TLEDSlopesT10(L, x, &J[3*i]);
   }
   return Invert3(J, Jinv);
+}
+
+/* Number of the Jacobian of a point of a pack among those stored; first[pack] are stored before it, one for a straight pack. */
+BY_HD int TLEDJacobianNumber(const int first[], int pack, int point)
+{
+  return first[pack] + (first[pack + 1] - first[pack] == 1 ? 0 : point);
 }
 
 /* H = (du/dxi) (dxi/dX), row-major, from the slopes of the three displacement components (3 x 3, row i) */
