@@ -40,6 +40,7 @@ set_tests_properties(unit.tled.modes PROPERTIES SKIP_RETURN_CODE 77)
 byssus_test(convergence/test_tled_static base tled)
 byssus_test(unit/tled/test_implicit base tled)
 byssus_test(unit/tled/test_implicit_contact base tled)
+byssus_test(unit/tled/test_implicit_energy base tled)
 byssus_test(convergence/test_tled_dynamic base tled)
 
 # on two processes

@@ -42,7 +42,8 @@ struct _n_TLEDImplicit {
   PetscReal          *f_int, *f_ext, *residual; /* n_nodes x 3 [N]                      */
   PetscReal          *start, *last, *trial; /* n_nodes x 3: displacements of load stepping [m]   */
   PetscReal          *v, *a;  /* n_nodes x 3: velocity, acceleration of the time steps   */
-  PetscObjectState    state_u, state_v; /* of the TLED's vectors when a was worked out   */
+  PetscReal          *inner, *outer; /* n_nodes x 3: at the last step's end, internal forces with contact's; loads' and f [N] */
+  PetscObjectState    state[3]; /* of the TLED's vectors u, v, f when a was worked out   */
   PetscReal           state_time;
   PetscBool           stepped;
   PetscBool           follows, unsymmetric; /* a load follows the surface; the solvers know it  */

@@ -9,6 +9,7 @@
    is the midpoint rule.
    [J. Chung and G. M. Hulbert, J. Appl. Mech. 60 (1993) 371, doi:10.1115/1.2900803] */
 #include "tled/tled_implicit_impl.h"
+#include "mat3.h"
 #include <petsctime.h>
 
 #define HALVINGS 8 /* of a time step that Newton's method does not solve */
@@ -28,26 +29,92 @@ static Scheme MakeScheme(PetscReal rho)
   return s;
 }
 
+/* Relaxing stresses go on by dt to the state (u, v) at time t, and its forces are known: internal ones, contact's with them as it stores energy
+   too, and those of loads and f without gravity's. BY_ERR_BREAKDOWN, not reported, when an element is inverted. */
+static PetscErrorCode EndForces(TLEDImplicit im, PetscReal t, PetscReal dt, const PetscReal u[], const PetscReal v[])
+{
+  const TLED      tled = im->tled;
+  const PetscReal beta = tled->params.stiffness_damping;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) im->y[k] = u[k] + beta * v[k];
+  if (tled->loops.viscous) ByCall(TLEDCommitViscous_Private(tled, im->y, dt)); /* leaves the forces in tled->trial */
+  else ByCall(TLEDForces_Private(tled, im->y, tled->trial));
+  PetscCall(TLEDExternalForces_Private(tled, t, u, im->outer));
+  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
+    PetscReal push[3] = {0.0, 0.0, 0.0};
+    if (tled->contact.n) (void)TLEDContactAt_Private(tled, a, &u[3 * a], push, NULL, NULL);
+    for (PetscInt i = 0; i < 3; i++) {
+      im->inner[3 * a + i] = tled->trial[3 * a + i] - push[i];
+      im->outer[3 * a + i] -= tled->mass[a] * tled->gravity[i] + push[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* has anything that forces depend on been changed since the last step? */
+static PetscErrorCode IsKnown(TLEDImplicit im, PetscBool *known)
+{
+  const Vec        vec[3] = {im->tled->u, im->tled->v, im->tled->f};
+  PetscObjectState now;
+
+  PetscFunctionBegin;
+  *known = im->stepped && im->state_time == im->tled->state.time ? PETSC_TRUE : PETSC_FALSE;
+  for (int i = 0; i < 3; i++) {
+    PetscCall(PetscObjectStateGet((PetscObject)vec[i], &now));
+    if (now != im->state[i]) *known = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* a = (f_ext - f_int)/m - alpha v at the body's state, unless it is known from the last step */
 static PetscErrorCode KnowAcceleration(TLEDImplicit im, const PetscReal u[], const PetscReal v[])
 {
   const TLED       tled = im->tled;
-  const PetscReal  beta = tled->params.stiffness_damping, time = tled->state.time;
-  PetscObjectState now_u, now_v;
+  PetscObjectState now;
+  PetscBool        known;
 
   PetscFunctionBegin;
-  PetscCall(PetscObjectStateGet((PetscObject)tled->u, &now_u));
-  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &now_v));
-  if (im->stepped && now_u == im->state_u && now_v == im->state_v && time == im->state_time) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TLEDExternalForces_Private(im->tled, time, u, im->f_ext));
-  for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) im->y[k] = u[k] + beta * v[k];
-  ByCall(TLEDCommitViscous_Private(tled, im->y, 0.0)); /* what was done to u from outside was a jump */
-  im->problem.history = 0.0;
-  ByCall(TLEDImplicitForces_Private(im, im->y, im->f_int));
+  PetscCall(IsKnown(im, &known));
+  if (known) PetscFunctionReturn(PETSC_SUCCESS);
+  ByCall(EndForces(im, tled->state.time, 0.0, u, v)); /* what was done to u from outside was a jump */
+  PetscCall(PetscObjectStateGet((PetscObject)tled->u, &now));
+  if (!tled->force_valid || now != tled->force_state) { /* losses of stresses count from here on */
+    PetscCall(TLEDStrain_Private(tled, u, &tled->state.internal_work, NULL, NULL));
+    tled->state.internal_work += TLEDContactEnergy_Private(tled, u);
+  }
   for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++)
-    im->a[k] = (im->f_ext[k] - im->f_int[k]) / tled->mass[k / 3] - tled->params.damping * v[k];
-  PetscCall(TLEDProject_Private(im->tled, im->a));
+    im->a[k] = (im->outer[k] - im->inner[k]) / tled->mass[k / 3] + tled->gravity[k % 3] - tled->params.damping * v[k];
+  PetscCall(TLEDProject_Private(tled, im->a));
+  PetscCall(TLEDPrescribed_Private(tled, tled->state.time, NULL, NULL, im->residual));
+  for (PetscInt k = 0; k < 3 * tled->mesh.n_nodes; k++) im->a[k] += im->residual[k];
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Works of the forces of one end of the step (sign -1: the old, +1: the new) over half its way, from problem.u0 to x, as TLEDStepOpenHeld()
+   and TLEDStepCloseHeld() count them: the two ends together are the trapezoidal rule, and supports give what their parts gain in speed. */
+static void AddWorks(TLEDImplicit im, PetscReal sign, PetscReal dt, const PetscReal x[], const PetscReal v[])
+{
+  const TLED       tled = im->tled;
+  TLEDState       *s    = &tled->state;
+  const PetscReal *g    = tled->gravity;
+
+  for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
+    const PetscReal *P = TLEDConstraintProjector_Private(tled, a), m = tled->mass[a];
+    PetscReal        du[3], free_du[3], free_v[3];
+    for (PetscInt i = 0; i < 3; i++) {
+      du[i]      = x[3 * a + i] - im->problem.u0[3 * a + i];
+      free_du[i] = du[i], free_v[i] = v[3 * a + i];
+    }
+    if (P) Mul3(P, du, free_du), Mul3(P, &v[3 * a], free_v);
+    for (PetscInt i = 0; i < 3; i++) {
+      const PetscReal outer = im->outer[3 * a + i], inner = im->inner[3 * a + i], held_v = v[3 * a + i] - free_v[i];
+      s->external_work += 0.5 * outer * du[i];
+      s->internal_work += 0.5 * inner * du[i];
+      s->damping_loss += 0.5 * dt * tled->params.damping * m * free_v[i] * free_v[i];
+      s->support_work += 0.5 * ((inner - outer - m * g[i]) * (du[i] - free_du[i]) + sign * m * held_v * held_v);
+    }
+  }
 }
 
 /* the problem of one step of dt from (u, v, a) at time t */
@@ -113,9 +180,10 @@ static PetscErrorCode Step(TLEDImplicit im, const Scheme *s, PetscReal t, PetscR
     PetscCall(TLEDImplicitNewton_Private(im, x, &converged));
   }
   if (converged) {
+    AddWorks(im, -1.0, dt, x, v);
     PetscCall(Update(im, s, t + dt, dt, x, u, v, a));
-    for (PetscInt k = 0; k < n; k++) im->y[k] = u[k] + im->tled->params.stiffness_damping * v[k];
-    ByCall(TLEDCommitViscous_Private(im->tled, im->y, dt));
+    ByCall(EndForces(im, t + dt, dt, u, v));
+    AddWorks(im, 1.0, dt, x, v);
     im->state_time = t + dt;
     im->stats.load_steps++;
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,6 +219,22 @@ static PetscErrorCode Steps(TLEDImplicit im, PetscReal dt, PetscInt n_steps, Pet
   PetscFunctionReturn(ierr);
 }
 
+/* after the last step: its forces go on to a step of either solver, unless the state is changed */
+static PetscErrorCode Remember(TLEDImplicit im, PetscBool whole)
+{
+  const TLED tled   = im->tled;
+  const Vec  vec[3] = {tled->u, tled->v, tled->f};
+
+  PetscFunctionBegin;
+  for (int i = 0; i < 3; i++) PetscCall(PetscObjectStateGet((PetscObject)vec[i], &im->state[i]));
+  im->state_time = tled->state.time;
+  im->stepped    = whole;
+  if (whole) PetscCall(PetscArraycpy(tled->force, im->inner, 3 * tled->mesh.n_nodes));
+  tled->force_state = im->state[0];
+  tled->force_valid = whole;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   TLEDImplicitAdvance - move the body by n_steps implicit steps
 
@@ -163,11 +247,12 @@ static PetscErrorCode Steps(TLEDImplicit im, PetscReal dt, PetscInt n_steps, Pet
 - n_steps  - how many
 
   Lumped mass, damping, constraints and loads are those of the explicit solid, so that both solve the same equations of motion. External
-  forces are taken at the time and place of the internal ones.
+  forces are taken at the time and place of the internal ones. The works of TLEDGetStats() go on, by the trapezoidal rule: the balance of
+  energy is off by what the scheme is.
 
   Errors: BY_ERR_BREAKDOWN when a step and its parts of down to dt/256 are not solved
 
-  Tests: tests/unit/tled/test_implicit.c
+  Tests: tests/unit/tled/test_implicit.c, test_implicit_energy.c, test_implicit_contact.c
 
 .seealso: TLEDAdvance()
 @*/
@@ -192,10 +277,7 @@ PetscErrorCode TLEDImplicitAdvance(TLEDImplicit im, PetscReal dt, PetscInt n_ste
   PetscCall(PetscArraycpy(im->v, from, n));
   PetscCall(VecRestoreArrayRead(tled->v, &from));
   ierr = Steps(im, dt, n_steps, im->start, im->v);
-  PetscCall(PetscObjectStateGet((PetscObject)tled->u, &im->state_u));
-  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &im->state_v));
-  im->state_time = tled->state.time;
-  im->stepped    = ierr ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(Remember(im, ierr ? PETSC_FALSE : PETSC_TRUE));
   PetscCall(PetscTime(&t1));
   im->stats.seconds = t1 - t0;
   ByCall(ierr);
