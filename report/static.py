@@ -83,7 +83,8 @@ def locking():
 QUADRATIC = """`t10` against P2 elements of the independent code. Same mesh, quadrature of degree 5 (14 points; the reference has degree 4): both integrate the same
 thing almost exactly, so values agree to what quadrature leaves. On the finest graded mesh the values must lie within the reference's error bar (its change with
 the last refinement); 4 points is the default rule. Implicit. The weight is a body force, integrated as P2 elements do; the key `gravity` acts on the lumped
-masses, which is off by 1e-4 of the tip's displacement on these meshes."""
+masses, which is off by 1e-4 of the tip's displacement on these meshes. The membrane's best values are of mixed P2-P1 elements; nearly incompressible
+`t10` elements come from below as P2 does, and reach them on a mesh graded towards the clamp (hgg, 6,990 elements; reference's graded mesh: 1,735)."""
 
 
 def quadratic():
@@ -105,11 +106,12 @@ def quadratic():
         rows.append((f"twist_{size}", "neo_hookean, torque", rule, f"{torque:.3f} N m", small(relative(torque, reference.TWIST_P2["twist_" + size][0])),
                      f"{torque - reference.TWIST_BEST[0]:+.1f} of ±{reference.TWIST_BAR[0]:.1f}", f"{work - reference.TWIST_BEST[2]:+.1f} of ±{reference.TWIST_BAR[2]:.1f}", verdict(inside) if size == "h3" else ""))
     for sides, (best, bar, _) in reference.COOK_BEST.items():
-        for size in ("h1", "h2"):
-            found = verify(f"t10_cook_{size}_{sides}", cases.cook(size, "t10", sides, quadrature="14", **DIRECT), kind="implicit")["static"]
+        for size, rule in (("h1", "14"), ("h2", "14"), ("hgg", "4")):
+            found = verify(f"t10_cook_{size}_{sides}_{rule}", cases.cook(size, "t10", sides, quadrature=rule, **DIRECT), kind="implicit")["static"]
             corner = found["probes"]["corner_y"]["implicit"]
-            same = reference.COOK_P2[sides]["cook_" + size][0]
-            rows.append((f"cook_{size}", f"nu 0.499, {sides}, corner", "14", f"{1e3 * corner:.5f} mm", small(relative(corner, same)), f"{1e3 * (corner - best):+.3f} of ±{1e3 * bar:.3f} mm (mixed)", "", ""))
+            same = reference.COOK_P2[sides].get("cook_" + size)
+            rows.append((f"cook_{size}", f"nu 0.499, {sides}, corner", rule, f"{1e3 * corner:.5f} mm", small(relative(corner, same[0])) if same else "",
+                         f"{1e3 * (corner - best):+.3f} of ±{1e3 * bar:.3f} mm", "", verdict(abs(corner - best) <= bar) if size == "hgg" else ""))
     return QUADRATIC + "\n\n" + table(["mesh", "case", "points", "value", "from P2, same mesh", "from the best value", "energy from the best", "within"], rows)
 
 
