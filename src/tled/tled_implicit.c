@@ -47,7 +47,8 @@ PetscErrorCode TLEDImplicitCreate(MPI_Comm comm, TLED tled, TLEDImplicit *implic
   PetscCall(KeysSetDefaults(TLEDImplicitKeys, &im->params));
   PetscCall(PetscSNPrintf(im->prefix, sizeof im->prefix, "%s_implicit_", ((PetscObject)tled)->name));
   PetscCall(PetscCalloc6(n, &im->y, n, &im->f_int, n, &im->f_ext, n, &im->residual, n, &im->v, n, &im->a));
-  PetscCall(PetscCalloc5(n, &im->start, n, &im->last, n, &im->trial, n, &im->inner, n, &im->outer));
+  PetscCall(PetscCalloc5(n, &im->start, n, &im->trial, n, &im->inner, n, &im->outer, 3 * n, &im->last[0]));
+  im->last[1] = im->last[0] + n, im->last[2] = im->last[1] + n;
   PetscCall(PetscCalloc4(n, &im->problem.constant, n, &im->problem.held_at, n, &im->problem.u0, n, &im->problem.rate));
   *implicit = im;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -112,7 +113,7 @@ PetscErrorCode TLEDImplicitDestroy(TLEDImplicit *implicit)
   PetscCall(MatDestroy(&im->P));
   PetscCall(TLEDAssemblyDestroy_Private(&im->assembly));
   PetscCall(PetscFree6(im->y, im->f_int, im->f_ext, im->residual, im->v, im->a));
-  PetscCall(PetscFree5(im->start, im->last, im->trial, im->inner, im->outer));
+  PetscCall(PetscFree5(im->start, im->trial, im->inner, im->outer, im->last[0]));
   PetscCall(PetscFree4(im->problem.constant, im->problem.held_at, im->problem.u0, im->problem.rate));
   PetscCall(PetscFree(*implicit));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -40,7 +40,7 @@ struct _n_TLEDImplicit {
   TLEDImplicitProblem problem;
   PetscReal          *y;      /* n_nodes x 3: where forces are taken [m]                */
   PetscReal          *f_int, *f_ext, *residual; /* n_nodes x 3 [N]                      */
-  PetscReal          *start, *last, *trial; /* n_nodes x 3: displacements of load stepping [m]   */
+  PetscReal          *start, *trial, *last[3]; /* n_nodes x 3: displacements of load stepping [m] */
   PetscReal          *v, *a;  /* n_nodes x 3: velocity, acceleration of the time steps   */
   PetscReal          *inner, *outer; /* n_nodes x 3: at the last step's end, internal forces with contact's; loads' and f [N] */
   PetscObjectState    state[3]; /* of the TLED's vectors u, v, f when a was worked out   */

@@ -2,7 +2,7 @@
 #include "tled/tled_implicit_impl.h"
 #include <petsctime.h>
 
-#define EASY 6   /* Newton iterations of a step after which the next may be twice as long */
+#define EASY 5   /* Newton iterations of a step after which the next may be twice as long */
 #define FINE 1e-6 /* of a prescribed move: how far it is tried to find what the body answers to first order */
 
 #define SETTLE_STEPS 100  /* of settling, tries included                                                  */
@@ -64,19 +64,52 @@ static PetscErrorCode Hold(TLEDImplicit im, PetscReal x[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First guess at the next part: along the last step when there was one. Else a prescribed move is answered to first order,
-   x = u + move - K^-1 P K move, so that the elements beside the moved nodes do not take it all. */
-static PetscErrorCode Guess(TLEDImplicit im, const PetscReal u[], const PetscReal last[], PetscReal ratio, PetscReal x[])
+/* The equilibria last found and their parts of the way: what the next one is guessed from. */
+typedef struct {
+  PetscInt   n;    /* how many, 3 at most                 */
+  PetscReal  s[3]; /* parts, the last one first           */
+  PetscReal *u[3]; /* displacements there, n_nodes x 3 [m] */
+} Found;
+
+/* x at part s, by the polynomial through what was found; u[0] when that is one */
+static void Extrapolate(const Found *f, PetscInt n, PetscReal s, PetscReal x[])
 {
+  PetscReal weight[3] = {1.0, 1.0, 1.0};
+
+  for (PetscInt i = 0; i < 3 && i < f->n; i++)
+    for (PetscInt j = 0; j < 3 && j < f->n; j++)
+      if (j != i) weight[i] *= (s - f->s[j]) / (f->s[i] - f->s[j]);
+  for (PetscInt k = 0; k < n; k++) {
+    x[k] = f->u[0][k];
+    for (PetscInt i = 1; i < 3 && i < f->n; i++) x[k] += weight[i] * (f->u[i][k] - f->u[0][k]); /* the weights add up to one */
+  }
+}
+
+/* u, found at part s, is one more; the oldest of three is forgotten */
+static void Remember(Found *f, PetscInt n, PetscReal s, const PetscReal u[])
+{
+  PetscReal *room = f->u[2];
+
+  for (int i = 2; i > 0; i--) f->u[i] = f->u[i - 1], f->s[i] = f->s[i - 1];
+  f->u[0] = room, f->s[0] = s;
+  for (PetscInt k = 0; k < n; k++) room[k] = u[k];
+  f->n = PetscMin(3, f->n + 1);
+}
+
+/* First guess at part s: along what was found. At the start a prescribed move is answered to first order,
+   x = u + move - K^-1 P K move, so that the elements beside the moved nodes do not take it all. */
+static PetscErrorCode Guess(TLEDImplicit im, const Found *found, PetscReal s, PetscReal x[])
+{
+  const PetscReal *u = found->u[0];
   const PetscInt n = 3 * im->tled->mesh.n_nodes;
   PetscReal     *move = im->residual, *answer = im->f_ext, size = 0.0;
   PetscBool      solved;
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < n; k++) x[k] = u[k] + ratio * (u[k] - last[k]);
+  Extrapolate(found, n, s, x);
   PetscCall(Hold(im, x));
-  if (ratio > 0.0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (found->n > 1) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < n; k++) move[k] = x[k] - u[k], size = PetscMax(size, PetscAbsReal(move[k]));
   if (size == 0.0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < n; k++) im->y[k] = u[k] + FINE * move[k]; /* K move by a difference of the forces */
@@ -134,43 +167,44 @@ static PetscErrorCode Settle(TLEDImplicit im, const PetscReal u[], PetscReal x[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* one load step from u, `last` the one before it (ratio 0: there is none); with `settle` the body is let go there when Newton's method fails */
-static PetscErrorCode LoadStep(TLEDImplicit im, const PetscReal u[], const PetscReal last[], PetscReal ratio, PetscBool settle, PetscReal x[],
-                               PetscBool *converged)
+/* one load step to part s; with `settle` the body is let go there when Newton's method fails */
+static PetscErrorCode LoadStep(TLEDImplicit im, const Found *found, PetscReal s, PetscBool settle, PetscReal x[], PetscBool *converged)
 {
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(im->problem.u0, u, 3 * im->tled->mesh.n_nodes));
-  PetscCall(Guess(im, u, last, ratio, x));
+  PetscCall(PetscArraycpy(im->problem.u0, found->u[0], 3 * im->tled->mesh.n_nodes));
+  PetscCall(Guess(im, found, s, x));
   PetscCall(TLEDImplicitNewton_Private(im, x, converged));
-  if (!*converged && settle) PetscCall(Settle(im, u, x, converged));
+  if (!*converged && settle) PetscCall(Settle(im, found->u[0], x, converged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* load steps from u to the end; u is the last equilibrium found, part where it is */
 static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], PetscReal *part)
 {
-  const PetscInt n    = 3 * im->tled->mesh.n_nodes;
-  PetscReal     *last = im->last, *x = im->trial, s = 0.0, ds = im->params.load_step, ds_last = 0.0;
+  const PetscInt n     = 3 * im->tled->mesh.n_nodes;
+  PetscReal     *x     = im->trial, s = 0.0, ds = im->params.load_step;
+  Found          found = {0};
   PetscBool      converged, settle;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(last, u, n));
+  for (int i = 0; i < 3; i++) found.u[i] = im->last[i];
+  Remember(&found, n, s, u);
   while (s < 1.0) {
     const PetscReal next   = s + ds > 1.0 - 1e-9 ? 1.0 : s + ds;
     const PetscInt  before = im->stats.newton;
     *part = s;
     PetscCall(SetPart(im, way, next));
     settle = im->tled->contact.n || 0.5 * (next - s) < im->params.load_step_min ? PETSC_TRUE : PETSC_FALSE;
-    PetscCall(LoadStep(im, u, last, ds_last > 0.0 ? (next - s) / ds_last : 0.0, settle, x, &converged));
+    PetscCall(LoadStep(im, &found, next, settle, x, &converged));
     if (!converged) {
       im->stats.cuts++;
       ds = 0.5 * (next - s);
       if (ds < im->params.load_step_min) PetscFunctionReturn(BY_ERR_BREAKDOWN);
       continue;
     }
-    PetscCall(PetscArraycpy(last, u, n));
     PetscCall(PetscArraycpy(u, x, n));
-    ds_last = next - s, s = next;
+    s = next;
+    Remember(&found, n, s, u);
     im->stats.load_steps++;
     if (im->stats.newton - before <= EASY) ds *= 2.0;
   }
@@ -188,7 +222,7 @@ static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], 
 - time     - whose loads and constraints are to be balanced [s]; it becomes the body's time
 
   The way there has a parameter s from 0 to 1: f_int(u) = f_ext(t(s), u) - (1 - s) (f_ext - f_int at the start), with the prescribed
-  displacements of t(s) treated alike. Each load step is solved by Newton's method with a line search; one that fails, or that turns
+  displacements of t(s) treated alike. Each load step is solved by Newton's method, from the parabola through the last three; one that fails, or that turns
   an element inside out, is tried again with half the step; at contact, or when steps become too short, the body is first let settle, by
   implicit steps of the motion in a very viscous fluid.
 

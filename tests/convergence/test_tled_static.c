@@ -11,10 +11,14 @@ static TLEDImplicitStats it;
 /* equilibrium under the loads of `time` */
 static void Solve(TLED tled, PetscReal time)
 {
-  TLEDImplicit implicit;
-  const char  *why;
+  TLEDImplicit        implicit;
+  TLEDImplicitParams *p;
+  const char         *element, *why;
 
   assert_petsc(TLEDImplicitCreate(PETSC_COMM_SELF, tled, &implicit));
+  assert_petsc(TLEDImplicitGetParams(implicit, &p));
+  assert_petsc(TLEDGetElementName(tled, &element));
+  if (!strcmp(element, "anp")) p->load_step = 0.06, p->tolerance = 1e-8; /* its factors are the cost; 5e-4 is asked */
   assert_petsc(TLEDImplicitSetFromOptions(implicit));
   if (TLEDImplicitSolveStatic(implicit, time)) {
     assert_petsc(TLEDGetBreakdown(tled, &why));
