@@ -42,8 +42,9 @@ PetscErrorCode TLEDImplicitCreate(MPI_Comm comm, TLED tled, TLEDImplicit *implic
   PetscFunctionBegin;
   PetscCheck(tled->set_up, comm, PETSC_ERR_ORDER, "TLEDSetUp() comes before TLEDImplicitCreate()");
   PetscCall(PetscNew(&im));
-  im->comm = comm;
-  im->tled = tled;
+  im->comm         = comm;
+  im->tled         = tled;
+  im->problem.load = 1.0;
   PetscCall(KeysSetDefaults(TLEDImplicitKeys, &im->params));
   PetscCall(PetscSNPrintf(im->prefix, sizeof im->prefix, "%s_implicit_", ((PetscObject)tled)->name));
   PetscCall(PetscCalloc6(n, &im->y, n, &im->f_int, n, &im->f_ext, n, &im->residual, n, &im->v, n, &im->a));
@@ -169,6 +170,7 @@ PetscErrorCode TLEDImplicitResidual_Private(TLEDImplicit im, const PetscReal x[]
   ByCall(TLEDImplicitForces_Private(im, im->y, im->f_int));
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal m = q->inertia * im->tled->mass[k / 3] * (x[k] - q->u0[k]) + q->constant[k];
+    im->f_ext[k] *= q->load;
     r[k] = im->f_int[k] - im->f_ext[k] + m;
     inertia += m * m;
   }
@@ -235,7 +237,7 @@ static PetscErrorCode AddExternal(void *ctx, PetscInt a, PetscInt b, const Petsc
 
   PetscFunctionBegin;
   if (a != b) im->follows = PETSC_TRUE;
-  TLEDAssemblyAdd_Private(im->assembly, a, b, im->problem.share, K);
+  TLEDAssemblyAdd_Private(im->assembly, a, b, im->problem.share * im->problem.load, K);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -48,7 +48,8 @@ BY_EXTERN PetscErrorCode TLEDImplicitDestroy(TLEDImplicit *implicit);
 
 /* From the TLED's state (u, at its time) to equilibrium under the loads and constraints of time `time`, which becomes the TLED's time;
    v = 0 after it. On the way, part s of 1, loads and constraints are those of the time between, and what was out of balance at the
-   start is given back as (1 - s) of it: any state is a fit start, and a load that is there from the beginning grows from nothing.
+   start is given back as (1 - s) of it: any state is a fit start, and a load that is there from the beginning grows from nothing (from a
+   body nearly at rest as itself, following the surface).
    Where Newton's method fails at contact, or in the shortest load step, the body is let go to its place as in a very viscous fluid.
    BY_ERR_BREAKDOWN, TLEDGetBreakdown() says why, when no equilibrium is found; the TLED then holds the last one found on the way. */
 BY_EXTERN PetscErrorCode TLEDImplicitSolveStatic(TLEDImplicit implicit, PetscReal time);

@@ -8,11 +8,12 @@
 #define PAST 4 /* residuals of Newton's method that are looked back at */
 
 /* What is solved for the displacement x:
-     inertia M (x - u0) + f_int(y) - f_ext(time, y) + constant = 0,   y = share x + (1 - share) u0,
+     inertia M (x - u0) + f_int(y) - load f_ext(time, y) + constant = 0,   y = share x + (1 - share) u0,
    in the free directions, and x = held_at in the others. Static: share 1, inertia 0 (or a drag). */
 typedef struct {
   PetscReal time;       /* of loads [s]                                                            */
   PetscReal share;      /* of the new displacement in that at which forces are taken, 1 - alpha_f  */
+  PetscReal load;       /* part of the external forces that acts                                   */
   PetscReal inertia;    /* mass terms with x [1/s^2]                                               */
   PetscReal viscous;    /* stiffness damping: forces at y + viscous (x - u0) + rate  [1]           */
   PetscReal history;    /* time over which relaxing stresses relax [s]; PETSC_MAX_REAL: all of it  */

@@ -15,6 +15,7 @@
 typedef struct {
   PetscReal  t_start, t_end;
   PetscReal *imbalance;  /* f_ext - f_int at the start, which is taken away bit by bit [N]                   */
+  PetscBool  grows;      /* all loads grow from nothing instead, and f_int alone is taken away               */
   PetscReal *offset;     /* u - prescribed displacement at the start, taken away too; constrained directions [m] */
 } Way;
 
@@ -27,6 +28,7 @@ static PetscErrorCode SetPart(TLEDImplicit im, const Way *way, PetscReal s)
   PetscFunctionBegin;
   q->time = way->t_start + s * (way->t_end - way->t_start);
   PetscCall(TLEDPrescribed_Private(im->tled, q->time, q->held_at, NULL, NULL));
+  q->load = way->grows ? s : 1.0;
   for (PetscInt k = 0; k < n; k++) {
     q->constant[k] = (1.0 - s) * way->imbalance[k];
     q->held_at[k] += (1.0 - s) * way->offset[k];
@@ -51,7 +53,10 @@ static PetscErrorCode BeginWay(TLEDImplicit im, const PetscReal u[], PetscReal t
   for (PetscInt k = 0; k < n; k++) way->offset[k] = u[k] - way->offset[k] - q->held_at[k];
   PetscCall(TLEDExternalForces_Private(im->tled, way->t_start, u, im->f_ext));
   ByCall(TLEDImplicitForces_Private(im, u, im->f_int));
-  for (PetscInt k = 0; k < n; k++) way->imbalance[k] = im->f_ext[k] - im->f_int[k];
+  /* Loads that follow a body at rest grow as such: held back by a force that does not follow, they would make it unstable on the way.
+     Contact does not grow. */
+  if (!im->tled->contact.n && TLEDImplicitNorm_Private(n, im->f_int) < 0.5 * TLEDImplicitNorm_Private(n, im->f_ext)) way->grows = PETSC_TRUE;
+  for (PetscInt k = 0; k < n; k++) way->imbalance[k] = (way->grows ? 0.0 : im->f_ext[k]) - im->f_int[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -221,10 +226,11 @@ static PetscErrorCode FollowWay(TLEDImplicit im, const Way *way, PetscReal u[], 
 + implicit - the solver
 - time     - whose loads and constraints are to be balanced [s]; it becomes the body's time
 
-  The way there has a parameter s from 0 to 1: f_int(u) = f_ext(t(s), u) - (1 - s) (f_ext - f_int at the start), with the prescribed
-  displacements of t(s) treated alike. Each load step is solved by Newton's method, from the parabola through the last three; one that fails, or that turns
-  an element inside out, is tried again with half the step; at contact, or when steps become too short, the body is first let settle, by
-  implicit steps of the motion in a very viscous fluid.
+  The way there has a parameter s from 0 to 1: f_int(u) = f_ext(t(s), u) - (1 - s) (f_ext - f_int at the start) or, from a body nearly at
+  rest, f_int(u) = s f_ext(t(s), u) + (1 - s) f_int at the start, with the prescribed displacements of t(s) treated alike. Each load step
+  is solved by Newton's method, from the parabola through the last three; one that fails, or that turns an element inside out, is tried
+  again with half the step; at contact, or when steps become too short, the body is first let settle, by implicit steps of the motion in a
+  very viscous fluid.
 
   Errors: BY_ERR_BREAKDOWN when steps become shorter than load_step_min; TLEDGetBreakdown() tells how far the load went
 
@@ -258,6 +264,7 @@ PetscErrorCode TLEDImplicitSolveStatic(TLEDImplicit im, PetscReal time)
                               (double)im->stats.residual, (double)im->problem.time));
     PetscCall(TLEDImplicitFinish_Private(im, im->start, NULL, part < 1.0 ? way.t_start + part * (time - way.t_start) : time));
   }
+  im->problem.load = 1.0;
   PetscCall(PetscFree2(way.imbalance, way.offset));
   PetscCall(PetscTime(&t1));
   im->stats.seconds = t1 - t0;

@@ -117,8 +117,8 @@ static void FreeBody_Falls(void **state)
 }
 
 /* A pull that follows the beam's tip, with its weight: no potential, an unsymmetric tangent. It is exact: at the end each Newton
-   iteration squares the residual, so that few are needed; the explicit solid relaxes to the same place. (The pull follows the tip where it
-   turns, and so lets it turn further: ten times more of it makes the beam so soft that load steps shrink to hundredths.) */
+   iteration squares the residual, so that few are needed; the explicit solid relaxes to the same place. The pull follows the tip where it
+   turns, and so lets it turn further, but the beam stays stable (below: with sixteen weights). */
 static void FollowerLoad_KeepsNewtonQuadratic(void **state)
 {
   (void)state;
@@ -158,6 +158,40 @@ static void FollowerLoad_KeepsNewtonQuadratic(void **state)
   }
 }
 
+/* a pull of sixteen weights bends the beam by 0.81 of its length, in some load steps that let it grow as it follows; explicit steps from there
+   show that it is an equilibrium: the body stays */
+static void StrongFollowerLoad_IsFound(void **state)
+{
+  TLEDParams       *p;
+  TLED              tled = Beam(&p);
+  TLEDLoadParams    pull;
+  TLEDImplicit      implicit;
+  TLEDImplicitStats it;
+  const PetscReal  *x;
+  PetscInt          tip;
+
+  (void)state;
+  assert_petsc(KeysSetDefaults(TLEDLoadKeys, &pull));
+  AddName(&pull.groups, "tip");
+  pull.pressure = -1.6e5;
+  assert_petsc(TLEDAddLoad(tled, "pull", &pull));
+  assert_petsc(TLEDSetUp(tled));
+  tip = NodeAt(tled, 1.0, 0.05, 0.05);
+  assert_petsc(TLEDImplicitCreate(PETSC_COMM_SELF, tled, &implicit));
+  assert_petsc(TLEDImplicitSolveStatic(implicit, 0.0));
+  assert_petsc(TLEDImplicitGetStats(implicit, &it));
+  assert_petsc(TLEDImplicitDestroy(&implicit));
+  assert_petsc(TLEDGetPositions(tled, &x, NULL));
+  const PetscReal uz = x[3 * tip + 2] - 0.05;
+  assert_true(it.newton <= 100); /* measured 60 in 7 load steps */
+  assert_petsc(TLEDAdvance(tled, 0.2, NULL));
+  assert_petsc(TLEDGetPositions(tled, &x, NULL));
+  printf("strong pull: uz %.6f m, moved by %.1e m in 0.2 s; %d Newton iterations\n", uz, x[3 * tip + 2] - 0.05 - uz, (int)it.newton);
+  assert_true(uz < -0.8);
+  assert_close(x[3 * tip + 2] - 0.05, uz, 1e-8, uz); /* nothing moves it but what Newton's method left */
+  assert_petsc(TLEDDestroy(&tled));
+}
+
 /* a load that turns elements inside out whatever the steps are: a breakdown that says how far it went, not a wrong answer */
 static void ImpossibleLoad_BreaksDown(void **state)
 {
@@ -183,4 +217,5 @@ static void ImpossibleLoad_BreaksDown(void **state)
   assert_petsc(TLEDDestroy(&tled));
 }
 
-CHECK_MAIN(cmocka_unit_test(Way_DoesNotMatter), cmocka_unit_test(Calls_DoNotMatter), cmocka_unit_test(FreeBody_Falls), cmocka_unit_test(FollowerLoad_KeepsNewtonQuadratic), cmocka_unit_test(ImpossibleLoad_BreaksDown))
+CHECK_MAIN(cmocka_unit_test(Way_DoesNotMatter), cmocka_unit_test(Calls_DoNotMatter), cmocka_unit_test(FreeBody_Falls), cmocka_unit_test(FollowerLoad_KeepsNewtonQuadratic),
+           cmocka_unit_test(StrongFollowerLoad_IsFound), cmocka_unit_test(ImpossibleLoad_BreaksDown))
