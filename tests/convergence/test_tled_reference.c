@@ -4,6 +4,7 @@
 
    Beam: 1 x 0.1 x 0.1 m, clamped at x = 0, E 3 MPa, rho 1000 kg/m^3, g 9.81 m/s^2 in -z. Cook: 48 x 44/16 x 8 mm, clamped at x = 0,
    dead traction 6.25 MPa in y on x = 48 mm, mu 80.194 MPa, nu 0.499, sides free. */
+#include "convergence/peak.h"
 #include "unit/tled/body.h"
 #include <petscksp.h>
 
@@ -65,33 +66,6 @@ static void Relaxation_ReachesTheStaticState(void **state)
     assert_close(s.strain, beam[i].energy, 1e-4, beam[i].energy);
     assert_petsc(TLEDDestroy(&tled));
   }
-}
-
-/* maximum of the cubic a + b t + c t^2 + d t^3 fitted to samples by least squares (normal equations, t centred and scaled) */
-static void FitPeak(int n, const double t[], const double y[], double *t_peak, double *y_peak)
-{
-  double A[4][5] = {{0}}, c[4], middle = 0.5 * (t[0] + t[n - 1]), half = 0.5 * (t[n - 1] - t[0]), s;
-
-  for (int k = 0; k < n; k++) {
-    const double q[4] = {1, (t[k] - middle) / half, pow((t[k] - middle) / half, 2), pow((t[k] - middle) / half, 3)};
-    for (int i = 0; i < 4; i++) {
-      for (int j = 0; j < 4; j++) A[i][j] += q[i] * q[j];
-      A[i][4] += q[i] * y[k];
-    }
-  }
-  for (int i = 0; i < 4; i++)
-    for (int r = i + 1; r < 4; r++)
-      for (int j = 4; j >= i; j--) A[r][j] -= A[i][j] * A[r][i] / A[i][i];
-  for (int i = 3; i >= 0; i--) {
-    c[i] = A[i][4];
-    for (int j = i + 1; j < 4; j++) c[i] -= A[i][j] * c[j];
-    c[i] /= A[i][i];
-  }
-  s = (-2 * c[2] - sqrt(4 * c[2] * c[2] - 12 * c[3] * c[1])) /
-      (6 * c[3]); /* the root where the cubic is concave is found from both */
-  if (!(2 * c[2] + 6 * c[3] * s < 0)) s = (-2 * c[2] + sqrt(4 * c[2] * c[2] - 12 * c[3] * c[1])) / (6 * c[3]);
-  *t_peak = middle + half * s;
-  *y_peak = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }
 
 /* gravity switched on: the first peak of the free end, fitted as the reference was (cubic through +-0.08 s) and its implicit

@@ -1,46 +1,6 @@
 /* Materials of a body: several by physical volume, fibres from the mesh file, and what the user is told when parameters do not fit. */
 #include "unit/tled/cube.h"
 
-static char *Path(const char name[])
-{
-  static char path[256];
-  snprintf(path, sizeof path, "/tmp/byssus_test_materials_%d_%s", (int)getpid(), name);
-  return path;
-}
-
-static TLED Body(const char path[], TLEDParams **p)
-{
-  TLED tled = NewBody("", p);
-
-  snprintf((*p)->mesh, sizeof(*p)->mesh, "%s", path);
-  return tled;
-}
-
-/* SetUp must refuse, and say all the words (NULL ends) on stderr */
-static void Refused(TLED tled, const char *const words[])
-{
-  FILE *log = tmpfile();
-  char  text[4096];
-  int   old = dup(2);
-
-  fflush(stderr);
-  dup2(fileno(log), 2);
-  const PetscErrorCode ierr = TLEDSetUp(tled);
-  fflush(stderr);
-  dup2(old, 2);
-  close(old);
-  rewind(log);
-  text[fread(text, 1, sizeof text - 1, log)] = 0;
-  fclose(log);
-  assert_int_equal((int)ierr, (int)BY_ERR_INPUT);
-  for (int i = 0; words[i]; i++)
-    if (!strstr(text, words[i])) fail_msg("\"%s\" is missing from the message:\n%s", words[i], text);
-  if (strstr(text, "PETSC ERROR")) fail_msg("a traceback:\n%s", text);
-  assert_petsc(TLEDDestroy(&tled));
-}
-
-#define REFUSED(tled, ...) Refused(tled, (const char *const[]){__VA_ARGS__, NULL})
-
 #define N_CELLS 12 /* of the bar, of which the first N_LEFT belong to the volume "left" */
 #define N_LEFT  5
 

@@ -2,45 +2,6 @@
    element. */
 #include "unit/tled/cube.h"
 
-static char *Path(const char name[])
-{
-  static char path[256];
-  snprintf(path, sizeof path, "/tmp/byssus_test_mesh_%d_%s", (int)getpid(), name);
-  return path;
-}
-
-static TLED Body(const char path[], TLEDParams **p)
-{
-  TLED tled = NewBody("", p);
-  snprintf((*p)->mesh, sizeof(*p)->mesh, "%s", path);
-  return tled;
-}
-
-/* SetUp must refuse, and say all the words (NULL ends) on stderr */
-static void Refused(TLED tled, const char *const words[])
-{
-  FILE *log = tmpfile();
-  char  text[4096];
-  int   old = dup(2);
-
-  fflush(stderr);
-  dup2(fileno(log), 2);
-  const PetscErrorCode ierr = TLEDSetUp(tled);
-  fflush(stderr);
-  dup2(old, 2);
-  close(old);
-  rewind(log);
-  text[fread(text, 1, sizeof text - 1, log)] = 0;
-  fclose(log);
-  assert_int_equal((int)ierr, (int)BY_ERR_INPUT);
-  for (int i = 0; words[i]; i++)
-    if (!strstr(text, words[i])) fail_msg("\"%s\" is missing from the message:\n%s", words[i], text);
-  if (strstr(text, "PETSC ERROR")) fail_msg("a traceback:\n%s", text);
-  assert_petsc(TLEDDestroy(&tled)); /* half-built */
-}
-
-#define REFUSED(tled, ...) Refused(tled, (const char *const[]){__VA_ARGS__, NULL})
-
 static void Cube_IsReadAsWritten(void **state)
 {
   static const int versions[2] = {22, 41};

@@ -1,25 +1,9 @@
 /* Bodies of ten-node tetrahedra: patch test, rigid motion, gradient of the energy, tangent and its rank, time; with both quadrature
    rules, straight and curved elements. */
 #include "unit/tled/cube.h"
-#include "unit/tled/patch_reference.h"
+#include "unit/tled/forces.h"
 #include <omp.h>
 #include <petscblaslapack.h>
-
-#define ROUND 1e-12 /* of the largest force: sums of a few hundred numbers */
-
-static const double *map; /* the affine map of the test, row-major F */
-
-static void Affine(const PetscReal X[3], PetscReal u[3])
-{
-  for (int i = 0; i < 3; i++) u[i] = map[3 * i] * X[0] + map[3 * i + 1] * X[1] + map[3 * i + 2] * X[2] - X[i] + 0.3 * (i + 1);
-}
-
-static void Wavy(const PetscReal X[3], PetscReal u[3])
-{
-  u[0] = 0.05 * sin(3 * X[1] + X[2]) + 0.04 * X[0] * X[0];
-  u[1] = 0.06 * cos(2 * X[0]) - 0.05 * X[1] * X[2];
-  u[2] = 0.04 * sin(4 * X[2] + X[0] * X[1]) + 0.03 * X[2];
-}
 
 /* a unit cube of six quadratic tetrahedra */
 static TLED Cube(int law, int quadrature, double curved)
@@ -40,52 +24,13 @@ static TLED Cube(int law, int quadrature, double curved)
   return tled;
 }
 
-/* Affine motion: the stress of the independent code everywhere, so that every node feels P times the integral of its shape function
-   over the surface. On straight elements with both rules: f on a vertex is 0 and on a face's edge node P A/3 N of each face. */
 static void PatchTest_GivesTheUniformStress(void **state)
 {
   (void)state;
-  for (int law = 0; law < TLED_LAWS; law++) {
-    for (int rule = 0; rule < 2; rule++) {
-      TLED             tled = Cube(law, rule, 0.0);
-      const PetscInt  *tri;
-      const PetscReal *X, *f;
-      PetscInt         n_tri, n;
-      Vec              u, force;
-      TLEDStats        s;
-
-      assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
-      assert_petsc(VecDuplicate(u, &force));
-      assert_petsc(TLEDGetSize(tled, &n, NULL));
-      assert_petsc(TLEDGetMesh(tled, NULL, NULL, &X));
-      assert_petsc(TLEDGetSurface(tled, PETSC_FALSE, &n_tri, &tri));
-      for (int i = 0; i < PATCH_STATES; i++) {
-        const PatchReference *r        = &patch_reference[law][i];
-        double               *expected = calloc(3 * (size_t)n, sizeof *expected);
-        map                            = r->F;
-        SetVec(tled, u, Affine);
-        assert_petsc(TLEDInternalForce(tled, u, force));
-        for (PetscInt t = 3; t < n_tri; t += 4) { /* the middle one of a face's four triangles: its corners are the edges' nodes */
-          double a[3], b[3], area[3];
-          for (int k = 0; k < 3; k++)
-            a[k] = X[3 * tri[3 * t + 1] + k] - X[3 * tri[3 * t] + k], b[k] = X[3 * tri[3 * t + 2] + k] - X[3 * tri[3 * t] + k];
-          area[0] = 2.0 * (a[1] * b[2] - a[2] * b[1]), area[1] = 2.0 * (a[2] * b[0] - a[0] * b[2]),
-          area[2] = 2.0 * (a[0] * b[1] - a[1] * b[0]);
-          for (int c = 0; c < 3; c++)
-            for (int k = 0; k < 3; k++)
-              expected[3 * tri[3 * t + c] + k] +=
-                  (r->P[3 * k] * area[0] + r->P[3 * k + 1] * area[1] + r->P[3 * k + 2] * area[2]) / 3.0;
-        }
-        assert_petsc(VecGetArrayRead(force, &f));
-        for (PetscInt k = 0; k < 3 * n; k++) assert_close(f[k], expected[k], ROUND, 1e6);
-        assert_petsc(VecRestoreArrayRead(force, &f));
-        assert_petsc(TLEDGetStats(tled, &s));
-        assert_close(s.strain, r->W, ROUND, r->W);
-        free(expected);
-      }
-      assert_petsc(VecDestroy(&force));
-      assert_petsc(TLEDDestroy(&tled));
-    }
+  for (int k = 0; k < 2 * TLED_LAWS; k++) {
+    TLED tled = Cube(k / 2, k & 1, 0.0);
+    CheckPatch(tled, k / 2);
+    assert_petsc(TLEDDestroy(&tled));
   }
 }
 
@@ -126,81 +71,20 @@ static void CurvedPatch_IsInBalance(void **state)
 
 static void RigidMotion_GivesNoForce(void **state)
 {
-  static double Q[9]; /* a turn by 2.1 about y */
-
-  Q[0] = Q[8] = cos(2.1), Q[2] = sin(2.1), Q[4] = 1.0, Q[6] = -sin(2.1);
   (void)state;
-  map = Q;
   for (int k = 0; k < 4 * TLED_LAWS; k++) {
-    TLED      tled = Cube(k / 4, k & 1, k & 2 ? 0.05 : 0.0);
-    Vec       u, f;
-    PetscReal top;
-    TLEDStats stats;
-
-    assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
-    assert_petsc(VecDuplicate(u, &f));
-    SetVec(tled, u, Affine);
-    assert_petsc(TLEDInternalForce(tled, u, f));
-    assert_petsc(VecNorm(f, NORM_INFINITY, &top));
-    assert_close(top, 0.0, ROUND, 1e6);
-    assert_petsc(TLEDGetStats(tled, &stats));
-    assert_close(stats.strain, 0.0, ROUND, 1e6);
-    assert_close(stats.volume, stats.volume_reference, ROUND, 1.0);
-    assert_petsc(VecDestroy(&f));
+    TLED tled = Cube(k / 4, k & 1, k & 2 ? 0.05 : 0.0);
+    CheckRigidMotion(tled);
     assert_petsc(TLEDDestroy(&tled));
   }
 }
 
-/* f = dW/du and K = df/du along a direction, by central differences of step 1e-6: the error is eps^2 and round-off over eps */
 static void ForceAndTangent_AreDerivatives(void **state)
 {
-  const PetscReal eps = 1e-6;
-
   (void)state;
   for (int k = 0; k < 4 * TLED_LAWS; k++) {
-    TLED      tled = Cube(k / 4, k & 1, k & 2 ? 0.05 : 0.0);
-    Vec       u, u0, d, f, up, down, Kd;
-    Mat       K = NULL;
-    PetscReal W[2], work, size, top;
-    TLEDStats stats;
-
-    assert_petsc(TLEDGetVectors(tled, &u, NULL, NULL));
-    assert_petsc(VecDuplicate(u, &u0));
-    assert_petsc(VecDuplicate(u, &d));
-    assert_petsc(VecDuplicate(u, &f));
-    assert_petsc(VecDuplicate(u, &up));
-    assert_petsc(VecDuplicate(u, &down));
-    assert_petsc(VecDuplicate(u, &Kd));
-    SetVec(tled, u0, Wavy);
-    map = patch_reference[0][0].F;
-    SetVec(tled, d, Affine);
-    assert_petsc(VecPointwiseMult(d, d, u0));
-    assert_petsc(VecNorm(d, NORM_INFINITY, &size));
-    assert_petsc(VecScale(d, 1.0 / size));
-    assert_petsc(TLEDInternalForce(tled, u0, f));
-    assert_petsc(TLEDTangent(tled, u0, &K));
-    for (int i = 0; i < 2; i++) {
-      assert_petsc(VecWAXPY(u, i ? -eps : eps, d, u0));
-      assert_petsc(TLEDInternalForce(tled, u, i ? down : up));
-      assert_petsc(TLEDGetStats(tled, &stats));
-      W[i] = stats.strain;
-    }
-    assert_petsc(VecDot(f, d, &work));
-    assert_close((W[0] - W[1]) / (2 * eps), work, 1e-8, 1e5);
-    assert_petsc(VecAXPY(up, -1.0, down));
-    assert_petsc(VecScale(up, 1.0 / (2 * eps)));
-    assert_petsc(MatMult(K, d, Kd));
-    assert_petsc(VecNorm(Kd, NORM_INFINITY, &size));
-    assert_petsc(VecAXPY(Kd, -1.0, up));
-    assert_petsc(VecNorm(Kd, NORM_INFINITY, &top));
-    assert_close(top, 0.0, 1e-8, size);
-    assert_petsc(MatDestroy(&K));
-    assert_petsc(VecDestroy(&u0));
-    assert_petsc(VecDestroy(&d));
-    assert_petsc(VecDestroy(&f));
-    assert_petsc(VecDestroy(&up));
-    assert_petsc(VecDestroy(&down));
-    assert_petsc(VecDestroy(&Kd));
+    TLED tled = Cube(k / 4, k & 1, k & 2 ? 0.05 : 0.0);
+    CheckDerivatives(tled);
     assert_petsc(TLEDDestroy(&tled));
   }
 }
