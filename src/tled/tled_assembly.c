@@ -224,10 +224,7 @@ PetscErrorCode TLEDAssemblyFill_Private(TLED tled, const PetscReal u[], TLEDTang
   PetscFunctionBegin;
   s->average = tled->loops.anp && kind == TLED_TANGENT_EXACT;
   if (s->average) ByCall(TLEDForces_Private(tled, u, tled->trial)); /* leaves J_a - 1 and q_a in the loops' nodal values */
-  else if (tled->loops.anp) {
-#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
-    TLEDNodalVolumes_OpenMP(&tled->loops, u);
-  }
+  else TLEDKnowVolumes_Private(&tled->loops, u);
   PetscCall(PetscArrayzero(s->stiffness, 9 * n_blocks));
   if (s->average) {
     PetscCall(PetscArrayzero(s->ratio, 3 * s->n_laws * n_blocks));

@@ -61,10 +61,7 @@ static PetscInt MostStrained(TLED tled, const PetscReal u[])
   PetscInt          most = 0;
   double            top  = -1.0;
 
-  if (tled->loops.ops->averaged) {
-#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
-    TLEDNodalVolumes_OpenMP(&tled->loops, u);
-  }
+  TLEDKnowVolumes_Private(&tled->loops, u);
   for (int k = 0; k < TLED_LANES * b->n_packs * b->n_points; k++) {
     TLEDPoint p;
     if (b->element[k / b->n_points] < 0) continue;
@@ -82,10 +79,7 @@ static PetscInt MostInMode(TLED tled, const PetscReal u[])
   PetscInt          most = 0;
   PetscReal         top  = -1.0;
 
-  if (tled->loops.ops->averaged) {
-#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
-    TLEDNodalVolumes_OpenMP(&tled->loops, u);
-  }
+  TLEDKnowVolumes_Private(&tled->loops, u);
   for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
     if (b->element[l] < 0) continue;
     const PetscReal energy = TLEDModeEnergy_Private(tled, l, u);

@@ -60,11 +60,19 @@ PetscErrorCode TLEDElementPick_Private(TLED tled)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* what TLEDPointAt_Private() needs to know at displacement u before it: the nodal volume ratios, where the element averages them */
+void TLEDKnowVolumes_Private(const TLEDLoops *w, const PetscReal u[])
+{
+  if (!w->ops->averaged) return;
+#pragma omp parallel num_threads(TLEDThreads_OpenMP(w))
+  TLEDNodalVolumes_OpenMP(w, u);
+}
+
 /*
   TLEDPointAt_Private - one integration point of an element at displacement u
 
   Input Parameters:
-+ loops - with the nodal volume ratios at u in loops->nodal (TLEDNodalVolumes_OpenMP) when the element averages them
++ loops - with the nodal volume ratios at u in loops->nodal (TLEDKnowVolumes_Private()) when the element averages them
 . tets  - nodes of all elements
 . lane  - place of the element, not padding
 . point - number of the integration point

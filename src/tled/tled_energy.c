@@ -19,10 +19,7 @@ PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *ene
 
   PetscFunctionBegin;
   part = w->partial; /* four numbers fit: every block has at least four slots of three */
-  if (w->anp) {
-#pragma omp parallel num_threads(TLEDThreads_OpenMP(w))
-    TLEDNodalVolumes_OpenMP(w, u);
-  }
+  TLEDKnowVolumes_Private(w, u);
 #pragma omp parallel for schedule(static) num_threads(TLEDThreads_OpenMP(w))
   for (int block = 0; block < b->n_blocks; block++) {
     double q[4] = {0.0, 0.0, PETSC_MAX_REAL, 0.0};

@@ -288,6 +288,7 @@ void           TLEDViscousStress_OpenMP(const TLEDLoops *loops, int pack, int po
 /* tled_element.c */
 extern const TLEDElementOps TLEDElementT4, TLEDElementANP, TLEDElementT10;
 PetscErrorCode TLEDElementPick_Private(TLED tled); /* loops->ops from the key `element` */
+void TLEDKnowVolumes_Private(const TLEDLoops *loops, const PetscReal u[]);
 void           TLEDPointAt_Private(const TLEDLoops *loops, const PetscInt tets[], int lane, int point, const double u[], TLEDPoint *p);
 /* number of the stored Jacobian of a point of a pack of ten-node elements */
 static inline int TLEDJacobianPlace(const TLEDBlocks *b, int pack, int point)

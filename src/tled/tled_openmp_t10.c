@@ -142,48 +142,29 @@ INLINE void PointStress(const TLEDLaw *m, const double Jinv[], const double V0[]
   }
 }
 
-/* forces of a pack at all integration points, for one law known to the compiler; returns how many points are broken */
-INLINE int PackForces(int law, const TLEDLaw *material, const TLEDBlocks *b, int pack, Pack *p)
+/* stresses of a material with a Prony series at one point of each lane, as PointStress() */
+static void ViscousStress(const TLEDLoops *w, int pack, int point, const double Jinv[], const double V0[], Pack *p, double T[9][L])
 {
-  const double *fibre  = b->fibre && law == TLED_LAW_TRANSVERSE ? b->fibre + 3 * L * pack : NULL;
-  const TLEDLaw m      = KnownLaw(law, material);
-  const int     four   = b->n_points == TLED_T10_POINTS;
-  int           broken = 0;
+  double P_of[9][L] __attribute__((aligned(64)));
 
-  if (four) SlopesFour(p);
-  for (int q = 0; q < b->n_points; q++) {
-    const double *Jinv = b->G + 9 * L * TLEDJacobianPlace(b, pack, q), *V0 = b->V0 + (b->n_points * pack + q) * L;
-    double(*T)[L]      = p->T[four ? q : 0], L4[4];
-    if (!four) {
-      (void)TLEDQuadratureT10(b->n_points, q, L4);
-      SlopesAt(L4, T, p);
-    }
-    broken += PointGradients(Jinv, T, p);
-    if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(p->jm1, p->ln_J);
-    PointStress(&m, Jinv, V0, fibre, p, T);
-    if (!four) ForcesAt(L4, q == 0, T, p);
+  TLEDViscousStress_OpenMP(w, pack, point, 1, p->H, P_of);
+#pragma GCC ivdep
+  for (int l = 0; l < L; l++) {
+    double P[9];
+    LaneMatrix(P_of[0], l, P);
+    StorePoint(P, Jinv, V0, l, T);
   }
-  if (four) ForcesFour(p);
-  return broken;
 }
 
-#define FORCES_OF(Law, number)                                                             \
-  KERNEL int Forces##Law(const TLEDLaw *m, const TLEDBlocks *b, int pack, Pack *p)         \
-  {                                                                                        \
-    return PackForces(number, m, b, pack, p);                                              \
-  }
-FORCES_OF(NeoHookean, TLED_LAW_NEO_HOOKEAN)
-FORCES_OF(StVenantKirchhoff, TLED_LAW_ST_VENANT_KIRCHHOFF)
-FORCES_OF(NeoHookeanIso, TLED_LAW_NEO_HOOKEAN_ISO)
-FORCES_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
-FORCES_OF(Transverse, TLED_LAW_TRANSVERSE)
+#define VISCOUS (-1) /* in place of a law: any, with a Prony series */
 
-/* the same of a pack whose material has a Prony series */
-KERNEL int ForcesViscous(const TLEDLoops *w, int pack, Pack *p)
+/* forces of a pack at all integration points, for one law known to the compiler; returns how many points are broken */
+INLINE int PackForces(int law, const TLEDLoops *w, int pack, Pack *p)
 {
-  const TLEDBlocks *b    = w->blocks;
-  const int         four = b->n_points == TLED_T10_POINTS;
-  double            P_of[9][L] __attribute__((aligned(64)));
+  const TLEDBlocks *b      = w->blocks;
+  const double     *fibre  = b->fibre && law == TLED_LAW_TRANSVERSE ? b->fibre + 3 * L * pack : NULL;
+  const TLEDLaw     m      = KnownLaw(law, &w->laws[b->material[pack]]);
+  const int         four   = b->n_points == TLED_T10_POINTS;
   int               broken = 0;
 
   if (four) SlopesFour(p);
@@ -195,12 +176,10 @@ KERNEL int ForcesViscous(const TLEDLoops *w, int pack, Pack *p)
       SlopesAt(L4, T, p);
     }
     broken += PointGradients(Jinv, T, p);
-    TLEDViscousStress_OpenMP(w, pack, q, 1, p->H, P_of);
-#pragma GCC ivdep
-    for (int l = 0; l < L; l++) {
-      double P[9];
-      LaneMatrix(P_of[0], l, P);
-      StorePoint(P, Jinv, V0, l, T);
+    if (law == VISCOUS) ViscousStress(w, pack, q, Jinv, V0, p, T);
+    else {
+      if (law == TLED_LAW_NEO_HOOKEAN) PackLogarithms(p->jm1, p->ln_J);
+      PointStress(&m, Jinv, V0, fibre, p, T);
     }
     if (!four) ForcesAt(L4, q == 0, T, p);
   }
@@ -208,19 +187,27 @@ KERNEL int ForcesViscous(const TLEDLoops *w, int pack, Pack *p)
   return broken;
 }
 
+#define FORCES_OF(Law, number) \
+  KERNEL int Forces##Law(const TLEDLoops *w, int pack, Pack *p) { return PackForces(number, w, pack, p); }
+FORCES_OF(NeoHookean, TLED_LAW_NEO_HOOKEAN)
+FORCES_OF(StVenantKirchhoff, TLED_LAW_ST_VENANT_KIRCHHOFF)
+FORCES_OF(NeoHookeanIso, TLED_LAW_NEO_HOOKEAN_ISO)
+FORCES_OF(MooneyRivlin, TLED_LAW_MOONEY_RIVLIN)
+FORCES_OF(Transverse, TLED_LAW_TRANSVERSE)
+FORCES_OF(Viscous, VISCOUS)
+
 /* the same by the material of the pack */
 static int PackForcesLaw(const TLEDLoops *w, int pack, Pack *p)
 {
-  const TLEDBlocks *b = w->blocks;
-  const TLEDLaw    *m = &w->laws[b->material[pack]];
+  const TLEDLaw *m = &w->laws[w->blocks->material[pack]];
 
   if (m->n_prony) return ForcesViscous(w, pack, p);
   switch (m->law) {
-  case TLED_LAW_NEO_HOOKEAN: return ForcesNeoHookean(m, b, pack, p);
-  case TLED_LAW_ST_VENANT_KIRCHHOFF: return ForcesStVenantKirchhoff(m, b, pack, p);
-  case TLED_LAW_NEO_HOOKEAN_ISO: return ForcesNeoHookeanIso(m, b, pack, p);
-  case TLED_LAW_MOONEY_RIVLIN: return ForcesMooneyRivlin(m, b, pack, p);
-  default: return ForcesTransverse(m, b, pack, p);
+  case TLED_LAW_NEO_HOOKEAN: return ForcesNeoHookean(w, pack, p);
+  case TLED_LAW_ST_VENANT_KIRCHHOFF: return ForcesStVenantKirchhoff(w, pack, p);
+  case TLED_LAW_NEO_HOOKEAN_ISO: return ForcesNeoHookeanIso(w, pack, p);
+  case TLED_LAW_MOONEY_RIVLIN: return ForcesMooneyRivlin(w, pack, p);
+  default: return ForcesTransverse(w, pack, p);
   }
 }
 

@@ -72,10 +72,7 @@ static PetscErrorCode MakeMasses(TLED tled, Relax *x, PetscInt n_steps)
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(x->mass, tled->mesh.n_nodes));
-  if (tled->loops.ops->averaged) {
-#pragma omp parallel num_threads(TLEDThreads_OpenMP(&tled->loops))
-    TLEDNodalVolumes_OpenMP(&tled->loops, x->u);
-  }
+  TLEDKnowVolumes_Private(&tled->loops, x->u);
   for (int l = 0; l < TLED_LANES * b->n_packs; l++) {
     const int e = b->element[l];
     if (e < 0) continue;
