@@ -157,65 +157,89 @@ static PetscErrorCode AddContacts(TLED tled, const char name[], const DomainPara
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams *domain)
+/* the proxies of a surface, whose keys have the prefix <name>_proxy_ */
+static PetscErrorCode SetUpProxy(Coupler c, Proxy proxy, const char name[], PetscInt n_nodes, const PetscReal x[], PetscInt n_triangles,
+                                 const PetscInt triangles[])
 {
-  TLED             tled;
-  Proxy            proxy = NULL;
-  PetscInt         n_nodes, n_tets, n_triangles;
-  const PetscInt  *tets, *triangles;
+  char prefix[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_proxy_", name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)proxy, prefix));
+  PetscCall(ProxySetSurface(proxy, n_nodes, x, n_triangles, triangles));
+  PetscCall(ProxySetFluid(proxy, c->sph));
+  PetscCall(ProxySetFromOptions(proxy));
+  ByCall(ProxySetUp(proxy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUpBody(Coupler c, const char name[], const DomainParams *domain, TLED tled, Proxy *proxy)
+{
+  PetscInt         n_nodes, n_triangles;
+  const PetscInt  *triangles;
   const PetscReal *X;
   SPHParams       *fluid;
   char             prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
 
   PetscFunctionBegin;
-  PetscCall(TLEDCreate(PETSC_COMM_SELF, name, &tled));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)tled, prefix));
   ByCall(TLEDSetFromOptions(tled));
   PetscCall(TLEDSetGravity(tled, c->gravity));
   ByCall(AddContacts(tled, name, domain));
   ByCall(TLEDSetUp(tled));
-  PetscCall(TLEDGetSize(tled, &n_nodes, &n_tets));
-  PetscCall(TLEDGetMesh(tled, NULL, &tets, &X));
-  if (c->sph) {
-    ByCall(DampMesh(tled, name));
-    PetscCall(SPHGetParams(c->sph, &fluid));
-    PetscCall(PetscSNPrintf(key, sizeof(key), "%s.mesh", name));
-    ByCall(CheckInside(key, domain, fluid->spacing, n_nodes, X));
-    PetscCall(TLEDGetSurface(tled, PETSC_TRUE, &n_triangles, &triangles));
-    PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_proxy_", name));
-    PetscCall(PetscObjectSetOptionsPrefix((PetscObject)proxy, prefix));
-    PetscCall(ProxySetSurface(proxy, n_nodes, X, n_triangles, triangles));
-    PetscCall(ProxySetFluid(proxy, c->sph));
-    PetscCall(ProxySetFromOptions(proxy));
-    ByCall(ProxySetUp(proxy));
+  if (!c->sph) PetscFunctionReturn(PETSC_SUCCESS);
+  ByCall(DampMesh(tled, name));
+  PetscCall(TLEDGetSize(tled, &n_nodes, NULL));
+  PetscCall(TLEDGetMesh(tled, NULL, NULL, &X));
+  PetscCall(TLEDGetSurface(tled, PETSC_TRUE, &n_triangles, &triangles));
+  PetscCall(SPHGetParams(c->sph, &fluid));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.mesh", name));
+  ByCall(CheckInside(key, domain, fluid->spacing, n_nodes, X));
+  PetscCall(ProxyCreate(PETSC_COMM_SELF, name, proxy));
+  ByCall(SetUpProxy(c, *proxy, name, n_nodes, X, n_triangles, triangles));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams *domain)
+{
+  TLED           tled;
+  Proxy          proxy = NULL;
+  PetscErrorCode ierr;
+
+  PetscFunctionBegin;
+  PetscCall(TLEDCreate(PETSC_COMM_SELF, name, &tled));
+  ierr = SetUpBody(c, name, domain, tled, &proxy);
+  if (!ierr) PetscCall(CouplerAddBody(c, name, tled, proxy)); /* the coupler has them from here */
+  else {
+    PetscCall(ProxyDestroy(&proxy));
+    PetscCall(TLEDDestroy(&tled));
   }
-  PetscCall(CouplerAddBody(c, name, tled, proxy));
+  ByCall(ierr);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainParams *domain)
 {
   Surface        surface;
-  Proxy          proxy;
+  Proxy          proxy = NULL;
   SPHParams     *fluid;
-  char           prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
+  char           key[2 * BY_NAME_MAX];
+  PetscErrorCode ierr;
 
   PetscFunctionBegin;
   ByCall(ReadObstacle(name, &surface));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.surface", name));
   PetscCall(SPHGetParams(c->sph, &fluid));
-  ByCall(CheckInside(key, domain, fluid->spacing, surface.n_nodes, surface.x));
-  PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_proxy_", name));
-  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)proxy, prefix));
-  PetscCall(ProxySetSurface(proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
-  PetscCall(ProxySetFluid(proxy, c->sph));
-  PetscCall(ProxySetFromOptions(proxy));
-  ByCall(ProxySetUp(proxy));
-  PetscCall(CouplerAddObstacle(c, name, proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
+  ierr = CheckInside(key, domain, fluid->spacing, surface.n_nodes, surface.x);
+  if (!ierr) {
+    PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
+    ierr = SetUpProxy(c, proxy, name, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles);
+  }
+  if (!ierr) PetscCall(CouplerAddObstacle(c, name, proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
+  else PetscCall(ProxyDestroy(&proxy));
   PetscCall(SurfaceDestroy(&surface));
+  ByCall(ierr);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -475,6 +475,17 @@ PetscErrorCode TLEDImplicitSetUp_Private(TLEDImplicit im)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A factorisation that failed must not be used again: the next solve begins with a new one. */
+static PetscErrorCode ForgetFactors(KSP ksp)
+{
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCReset(pc));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   TLEDImplicitNewton_Private - solve the problem
 
@@ -504,6 +515,7 @@ PetscErrorCode TLEDImplicitNewton_Private(TLEDImplicit im, PetscReal x[], PetscB
     im->stats.newton += n;
     PetscCall(SNESGetLinearSolveIterations(im->snes, &n));
     im->stats.linear += n;
+    if (reason == SNES_DIVERGED_LINEAR_SOLVE) PetscCall(ForgetFactors(ksp));
     PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPCG, &cg));
     if (reason != SNES_DIVERGED_LINEAR_SOLVE || !cg) break;
     PetscCall(KSPSetType(ksp, KSPGMRES));
@@ -535,6 +547,7 @@ PetscErrorCode TLEDImplicitLinear_Private(TLEDImplicit im, const PetscReal x[], 
   PetscCall(KSPSolve(ksp, im->r, im->x));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   *solved = reason > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (!*solved) PetscCall(ForgetFactors(ksp));
   PetscCall(Everywhere(im, im->x));
   PetscCall(VecGetArrayRead(im->everywhere, &all));
   PetscCall(PetscArraycpy(dx, all, 3 * im->tled->mesh.n_nodes));
