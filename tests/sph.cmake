@@ -14,3 +14,6 @@ set_tests_properties(backend.sph_cuda PROPERTIES LABELS "backend;cuda" SKIP_RETU
 
 # a minute: still water against rho g z; prints the table of docs/verification/fluid-slice.md
 byssus_test(convergence/test_still_water base sph)
+
+# hard cases with every solver: each prints what became of it as lines `hard fluid: case | solver | outcome | figures | seconds | within`
+byssus_test(hard/test_fluid base sph)
