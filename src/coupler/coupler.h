@@ -37,10 +37,18 @@ typedef struct {
   Names     bodies, obstacles, probes;
 } TopParams;
 
+typedef enum { FILL_BOX, FILL_SPHERE, FILL_CYLINDER } FillShape;
+typedef enum { FIELD_UNIFORM, FIELD_TAYLOR_GREEN, FIELD_ROTATION, FIELD_SHEAR, FIELD_STRAIN } FillField; /* sph/sph_field.h */
+
 typedef struct {
   PetscReal min[3], max[3], velocity[3];
   char      surface[PETSC_MAX_PATH_LEN];
   PetscReal scale, translate[3];
+  int       shape;                       /* FillShape                                                     */
+  int       axis;                        /* 0..2: of a cylinder and of a field                            */
+  PetscReal center[3], radius, length;   /* [m] of a sphere or cylinder; the centre is also the field's   */
+  int       field;                       /* FillField                                                     */
+  PetscReal amplitude, wavelength, rate; /* [m/s], [m], [1/s] of the field                                */
 } FillParams;
 
 typedef struct {

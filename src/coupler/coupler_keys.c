@@ -7,6 +7,8 @@
 
 static const char *const wall_names[]   = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
 static const char *const axis_names[]   = {"x", "y", "z", NULL};
+static const char *const shape_names[]  = {"box", "sphere", "cylinder", NULL};
+static const char *const field_names[]  = {"uniform", "taylor_green", "rotation", "shear", "strain", NULL};
 static const char *const scheme_names[] = {"auto", "explicit", "mass", NULL};
 static const char *const kinds[]        = {"static", "dynamic", "both", "implicit", "none", NULL};
 static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", NULL};
@@ -41,6 +43,15 @@ const Key FillKeys[] = {
   {"surface",   KEY_FILE, ROW(FillParams, surface),   "",    "", 0, 0, 0, NULL, "closed surface (stl, off, obj, ply, msh) that the water fills instead of a box"},
   {"scale",     KEY_REAL, ROW(FillParams, scale),     "1",   "1", 0, 1e6, KEY_LO_OPEN, NULL, "factor on the surface's coordinates"},
   {"translate", KEY_VEC3, ROW(FillParams, translate), "m",   "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "shift of the surface, after scaling"},
+  {"shape",     KEY_CHOICE, ROW(FillParams, shape),   "",    "box", 0, 0, 0, shape_names, "box from min to max, or sphere or cylinder of center and radius"},
+  {"center",    KEY_VEC3, ROW(FillParams, center),    "m",   "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "of the sphere or cylinder, and of the field"},
+  {"radius",    KEY_REAL, ROW(FillParams, radius),    "m",   "0", 0, HUGE_LENGTH, 0, NULL, "of the sphere or cylinder"},
+  {"length",    KEY_REAL, ROW(FillParams, length),    "m",   "0", 0, HUGE_LENGTH, 0, NULL, "of the cylinder along its axis, half of it to either side of center; 0 = through the whole domain"},
+  {"axis",      KEY_CHOICE, ROW(FillParams, axis),    "",    "z", 0, 0, 0, axis_names, "of the cylinder and of the field"},
+  {"field",     KEY_CHOICE, ROW(FillParams, field),   "",    "uniform", 0, 0, 0, field_names, "added to velocity; with axis z, (x, y) from center: taylor_green u = A sin kx cos ky, v = -A cos kx sin ky; rotation u = -R y, v = R x; shear u = R y; strain u = R x, v = -R y"},
+  {"amplitude", KEY_REAL, ROW(FillParams, amplitude), "m/s", "0", -1e4, 1e4, 0, NULL, "A of taylor_green"},
+  {"wavelength", KEY_REAL, ROW(FillParams, wavelength), "m", "0", 0, HUGE_LENGTH, 0, NULL, "of taylor_green, k = 2 pi/wavelength"},
+  {"rate",      KEY_REAL, ROW(FillParams, rate),      "1/s", "0", -1e6, 1e6, 0, NULL, "R: angular velocity of rotation, rate of shear and strain"},
   KEY_END};
 
 const Key ObstacleKeys[] = {
@@ -86,7 +97,7 @@ const SceneSection CouplerSchema[] = {
   {"run",      RunKeys,      NULL,       NULL,        "the run and its directory"},
   {"domain",   DomainKeys,   NULL,       NULL,        "box in which everything happens"},
   {"sph",      SPHKeys,      NULL,       NULL,        "the fluid"},
-  {"fill",     FillKeys,     "sph",      "fill",      "water at the start: a box, or the inside of a surface"},
+  {"fill",     FillKeys,     "sph",      "fill",      "water at the start: a box, sphere or cylinder, or the inside of a surface"},
   {"body",     TLEDKeys,     NULL,       "bodies",    "an elastic body"},
   {"material", TLEDMaterialKeys, "body", "materials", "an elastic material of a part of a body"},
   {"constraint", TLEDConstraintKeys, "body", "constraints", "a support of a body: what is held or moved"},

@@ -125,6 +125,14 @@ PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SPHSetParticleVolume(SPH sph, PetscReal volume)
+{
+  PetscFunctionBegin;
+  PetscCheck(!sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "the volume of a particle is set before SPHSetUp()");
+  sph->particle_volume = volume;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* sums of W and of |grad W|^2 over the points of a full cubic lattice of spacing dx around one of them */
 static void LatticeSums(int kernel, PetscReal dx, PetscReal h, PetscReal *W, PetscReal *grad2)
 {
@@ -215,6 +223,7 @@ PetscErrorCode SPHSetUp(SPH sph)
   }
   LatticeSums(par->kernel, par->spacing, sph->h, &W, &grad2);
   sph->mass        = par->density / W;
+  if (sph->particle_volume > 0) sph->mass *= sph->particle_volume / PetscPowReal(par->spacing, 3);
   sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : SPHWallFactor(par->kernel, par->support);
   sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, par->kernel, par->support);
   sph->relax_time  = par->relax_time;

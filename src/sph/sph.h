@@ -70,6 +70,8 @@ BY_EXTERN PetscErrorCode SPHSetDomain(SPH sph, const PetscReal min[3], const Pet
 BY_EXTERN PetscErrorCode SPHSetGravity(SPH sph, const PetscReal g[3]);
 /* positions n x 3 [m], velocities n x 3 [m/s]; may be called several times before SetUp; copied */
 BY_EXTERN PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const PetscReal v[]);
+/* volume of fluid [m^3] that a particle stands for, where it is not spacing^3: a lattice stretched to fill a closed box exactly; before SetUp */
+BY_EXTERN PetscErrorCode SPHSetParticleVolume(SPH sph, PetscReal volume);
 BY_EXTERN PetscErrorCode SPHSetUp(SPH sph);
 BY_EXTERN PetscErrorCode SPHView(SPH sph, PetscViewer viewer);
 BY_EXTERN PetscErrorCode SPHDestroy(SPH *sph);

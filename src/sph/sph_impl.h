@@ -33,6 +33,7 @@ struct _p_SPH {
   PetscReal min[3], max[3];          /* [m]                                              */
   unsigned  walls, periodic;         /* bits of SPHSetDomain                             */
   PetscReal gravity[3];              /* [m/s^2]                                          */
+  PetscReal particle_volume;         /* [m^3] asked for; 0 = spacing^3                   */
 
   /* derived at SetUp */
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
