@@ -9,8 +9,16 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / os.environ.get("BYSSUS_BUILD", "build/release")
-WORK = ROOT / "build" / "report" / "solid"
+NAME = pathlib.Path(sys.argv[0]).stem  # the report: report/NAME.py is what was started
+WORK = ROOT / "build" / "report" / NAME
 PROGRAM = BUILD / "byssus"
+options = {"keep": False}
+
+
+def program_options(arguments):
+    """-keep is taken off: runs whose scene is unchanged and whose results are there are not run again, to work on a page"""
+    options["keep"] = "-keep" in arguments
+    return [a for a in arguments if a != "-keep"]
 
 
 class Failure(Exception):

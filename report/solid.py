@@ -5,19 +5,14 @@ Each section is kept in build/report/solid/SECTION.md, its scenes beside it (run
 -only the others are taken from there. Status 0 when every row is within what is allowed, 3 when one is not, 1 when something could not be run.
 """
 
-import os
-import platform
 import sys
-import time
 
 sys.dont_write_bytecode = True
 
 import dynamic
 import speed
 import static
-from program import BUILD, ROOT, WORK, Failure, execute, say
-
-PAGE = ROOT / "docs" / "verification" / "solid.md"
+from sections import main
 
 SECTIONS = (
     ("same_mesh", "Explicit and implicit, same mesh", static.same_mesh),
@@ -44,63 +39,5 @@ unless a unit is given. Rows that are not within what is allowed say **no**; the
 """
 
 
-def machine():
-    name = platform.machine()
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as file:
-            name = next((line.split(":")[1].strip() for line in file if line.startswith("model name")), name)
-    except OSError:
-        pass
-    return f"{os.cpu_count()} cores of an {name}" if name[0] in "AEIOU" else f"{os.cpu_count()} cores of a {name}"
-
-
-def note(name):
-    """what a reader should know of a section, written by hand"""
-    path = ROOT / "report" / "notes" / (name + ".md")
-    return "\n" + path.read_text(encoding="utf-8") if path.exists() else ""
-
-
-def make(name, section):
-    """one section, kept in a file"""
-    start = time.time()
-    print(f"== {name}", file=sys.stderr, flush=True)
-    text = section()
-    (WORK / (name + ".md")).write_text(text, encoding="utf-8")
-    (WORK / (name + ".seconds")).write_text(f"{time.time() - start:.1f}", encoding="utf-8")
-
-
-def write_page():
-    parts, seconds, failures = [], 0.0, 0
-    for name, title, _ in SECTIONS:
-        path = WORK / (name + ".md")
-        if not path.exists():
-            continue
-        text = path.read_text(encoding="utf-8")
-        seconds += float((WORK / (name + ".seconds")).read_text(encoding="utf-8"))
-        failures += text.count("**no**")
-        parts.append(f"\n## {title}\n`-only {name}`. {text}{note(name)}")
-    PAGE.write_text(HEAD.format(seconds=seconds, machine=machine(), failures=failures or "none") + "".join(parts), encoding="utf-8")
-    say(f"{PAGE}: {failures} rows not within, {seconds:.0f} s")
-    return failures
-
-
-def main(arguments):
-    only = arguments[1:] if arguments[:1] == ["-only"] else []
-    known = [name for name, _, _ in SECTIONS]
-    if (arguments and not only) or any(name not in known for name in only):
-        print(f"usage: ./dev report solid [-only SECTION ...]; sections: {' '.join(known)}", file=sys.stderr)
-        return 2
-    WORK.mkdir(parents=True, exist_ok=True)
-    try:
-        execute([BUILD / "byssus", "info"])
-        for name, _, section in SECTIONS:
-            if not only or name in only:
-                make(name, section)
-    except Failure as failure:
-        print(failure, file=sys.stderr)
-        return 1
-    return 3 if write_page() else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(sys.argv[1:], SECTIONS, HEAD))

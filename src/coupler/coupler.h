@@ -22,8 +22,8 @@ typedef enum {
 } ProbeQuantity;
 
 typedef struct {
-  PetscReal end, output_every, checkpoint_every; /* [s]                                */
-  PetscInt  max_steps;                           /* stop after this many steps; 0 = no */
+  PetscReal end, output_every, fields_every, checkpoint_every; /* [s]                                */
+  PetscInt  max_steps;                                         /* stop after this many steps; 0 = no */
   char      directory[PETSC_MAX_PATH_LEN];
 } RunParams;
 

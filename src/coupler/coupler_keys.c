@@ -17,6 +17,7 @@ static const char *const quantities[]   = {"displacement", "velocity", "pressure
 const Key RunKeys[] = {
   {"end",              KEY_REAL,   ROW(RunParams, end),              "s", NULL, 0, 1e9, KEY_LO_OPEN | KEY_REQUIRED, NULL, "simulated time at which the run ends"},
   {"output_every",     KEY_REAL,   ROW(RunParams, output_every),     "s", "0",  0, 1e9, 0, NULL, "time between results, 0 = end/50"},
+  {"fields_every",     KEY_REAL,   ROW(RunParams, fields_every),     "s", "0",  0, 1e9, 0, NULL, "time between particles, bodies and proxies in the results where tables are to be finer, a multiple of output_every; 0 = output_every"},
   {"checkpoint_every", KEY_REAL,   ROW(RunParams, checkpoint_every), "s", "0",  0, 1e9, 0, NULL, "time between checkpoints, 0 = only at the end or when interrupted"},
   {"max_steps",        KEY_INT,    ROW(RunParams, max_steps),        "1", "0",  0, 2e9, 0, NULL, "stop after this many steps, 0 = no limit"},
   {"directory",        KEY_STRING, ROW(RunParams, directory),        "",  NULL, 0, 0, KEY_REQUIRED, NULL, "run directory, relative to where the program is started"},

@@ -104,18 +104,9 @@ static PetscErrorCode WriteBody(Coupler c, CouplerResults *r, PetscInt k)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@ CouplerResultsWrite - append the current state to every file @*/
-PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r)
+static PetscErrorCode WriteFields(Coupler c, CouplerResults *r)
 {
-  PetscReal row[3 * BY_NAMES_MAX + 1];
-
   PetscFunctionBegin;
-  PetscCall(CouplerTimer(c, N_PHASES));
-  ByCall(WriteLedger(c, r));
-  if (r->probes) {
-    PetscCall(CouplerProbeRow(c, row));
-    ByCall(TableWrite(r->probes, row));
-  }
   if (r->fluid) {
     PetscInt         n;
     const PetscReal *x, *v, *p, *rho;
@@ -128,6 +119,22 @@ PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r)
   }
   for (PetscInt k = 0; k < c->n_surfaces; k++) ByCall(WriteBody(c, r, k));
   r->n_series++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@ CouplerResultsWrite - append the current state to the tables and, with `fields`, to all other files @*/
+PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r, PetscBool fields)
+{
+  PetscReal row[3 * BY_NAMES_MAX + 1];
+
+  PetscFunctionBegin;
+  PetscCall(CouplerTimer(c, N_PHASES));
+  ByCall(WriteLedger(c, r));
+  if (r->probes) {
+    PetscCall(CouplerProbeRow(c, row));
+    ByCall(TableWrite(r->probes, row));
+  }
+  if (fields) ByCall(WriteFields(c, r));
   PetscCall(CouplerTimer(c, PHASE_OUTPUT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,7 +16,7 @@ typedef struct {
 } CouplerResults;
 
 PETSC_INTERN PetscErrorCode CouplerResultsCreate(Coupler c, const char directory[], const char scene[], PetscBool append, CouplerResults *r);
-PETSC_INTERN PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r);
+PETSC_INTERN PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r, PetscBool fields);
 PETSC_INTERN PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char status[], PetscReal wall_seconds);
 PETSC_INTERN PetscErrorCode CouplerResultsDestroy(CouplerResults *r);
 

@@ -16,7 +16,8 @@ typedef struct {
   Progress       progress;
   RunParams      params;
   const char    *scene_text;
-  PetscInt       n_outputs; /* output k is at time k * output_every */
+  PetscInt       n_outputs;     /* output k is at time k * output_every */
+  PetscInt       fields_stride; /* every so many outputs the fields are written too */
   PetscReal      next_checkpoint;
   PetscBool      same_directory; /* resumes into the directory of its checkpoint: files go on */
   PetscLogDouble start;
@@ -24,10 +25,17 @@ typedef struct {
 
 static PetscErrorCode ReadRunParams(RunParams *params)
 {
+  PetscReal ratio;
+
   PetscFunctionBegin;
   PetscCall(KeysSetDefaults(RunKeys, params));
   PetscCall(KeysSetFromOptions(RunKeys, "run_", params));
   if (params->output_every <= 0.0) params->output_every = params->end / 50.0;
+  if (params->fields_every <= 0.0) params->fields_every = params->output_every;
+  ratio = params->fields_every / params->output_every;
+  if (ratio < 0.5 || PetscAbsReal(ratio - PetscFloorReal(ratio + 0.5)) > 1e-6 * ratio) {
+    PetscFunctionReturn(InputError("run.fields_every", "must be a multiple of run.output_every, which is %g s", (double)params->output_every));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,7 +70,7 @@ static PetscErrorCode Advance(Run *run)
   run->results.steps++;
   if (next - c->time > 1e-9 * run->params.output_every) PetscFunctionReturn(PETSC_SUCCESS);
   c->time = next;
-  ByCall(CouplerResultsWrite(c, &run->results));
+  ByCall(CouplerResultsWrite(c, &run->results, (PetscBool)(run->n_outputs % run->fields_stride == 0 || c->time >= run->params.end * (1.0 - 1e-9))));
   run->n_outputs++;
   if (run->params.checkpoint_every > 0.0 && c->time >= run->next_checkpoint - 1e-9 * run->params.output_every) {
     ByCall(Save(run));
@@ -112,7 +120,7 @@ static PetscErrorCode Finish(Run *run, PetscErrorCode outcome)
   if (outcome == BY_ERR_BREAKDOWN) {
     PetscCall(CouplerGetBreakdown(c, &why));
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the simulation broke down at %s\n", why));
-    ByCall(CouplerResultsWrite(c, &run->results));
+    ByCall(CouplerResultsWrite(c, &run->results, PETSC_TRUE));
     ByCall(CouplerResultsSummary(c, &run->results, status, WallSeconds(run)));
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the state at the breakdown is the last of the results in %s\n", run->params.directory));
     PetscFunctionReturn(BY_ERR_BREAKDOWN);
@@ -155,8 +163,9 @@ static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
       ByCall(SPHUpdateNeighbors(c->sph));
       PetscCall(CouplerUpdateContacts(c));
     }
-    ByCall(CouplerResultsWrite(c, &run->results));
+    ByCall(CouplerResultsWrite(c, &run->results, PETSC_TRUE));
   }
+  run->fields_stride   = (PetscInt)PetscFloorReal(run->params.fields_every / run->params.output_every + 0.5);
   run->n_outputs       = 1 + (PetscInt)PetscFloorReal(c->time / run->params.output_every + 1e-6);
   run->next_checkpoint = c->time + run->params.checkpoint_every;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,0 +1,31 @@
+#!/usr/bin/python3
+"""fluid.py - ./dev report fluid [-keep] [-only SECTION ...]: run everything that docs/verification/fluid.md shows, and write it.
+
+Each section is kept in build/report/fluid/SECTION.md, its scenes and runs beside it (run one by itself: byssus run build/report/fluid/NAME.yaml). With
+-only the others are taken from there; with -keep runs whose scene is unchanged are read again instead of run again, to work on tables and pictures.
+Status 0 when every row is within what is allowed, 3 when one is not, 1 when something could not be run.
+
+A section is a function without arguments that returns markdown: what is asked, a table (resolution, error, order, seconds), a picture. It says its
+finest error for the table at the head by sections.claim. Runs: flow.py; pictures: draw.py; tables: program.table. To add one: its module below, its line here.
+"""
+
+import sys
+
+sys.dont_write_bytecode = True
+
+import fluid_still
+from sections import main
+
+SECTIONS = (
+    ("still", "Still water in a tank", fluid_still.still),
+)
+
+HEAD = """# The fluid against what is known
+
+Made by `./dev report fluid` ({seconds:.0f} s on {machine}); sections by `./dev report fluid -only NAME`, NAME given with each. Scenes and results are
+in `build/report/fluid`, reference numbers with their sources in `report/data`. Rows that are not within what is asked say **no**; there are {failures}.
+
+{summary}"""
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:], SECTIONS, HEAD))
