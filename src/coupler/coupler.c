@@ -141,7 +141,9 @@ static PetscErrorCode AddedMassRatio(CouplerSurface *s, PetscReal rest_density, 
 @*/
 PetscErrorCode CouplerSetUp(Coupler c)
 {
-  SPHParams *params;
+  SPHParams  *params;
+  const char *solver;
+  PetscBool   responds;
 
   PetscFunctionBegin;
   if (c->setup) PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,12 +153,15 @@ PetscErrorCode CouplerSetUp(Coupler c)
   PetscCall(SPHGetMass(c->sph, &c->mass));
   c->rest_density = params->density;
   c->compliant    = (PetscBool)(c->params.scheme == COUPLER_SCHEME_MASS && c->n_bodies > 0);
+  PetscCall(SPHGetSolver(c->sph, &solver, &responds));
+  if (c->compliant && !responds) PetscFunctionReturn(InputError("coupler.scheme", "mass needs a pressure solver that takes the bodies' response: sph.solver %s does not, iisph does", solver));
   for (PetscInt k = 0; k < c->n_bodies && c->params.scheme == COUPLER_SCHEME_AUTO; k++) {
-    PetscReal r;
+    PetscReal r = 0.0;
 
     if (!c->surface[k].proxy) continue;
     PetscCall(AddedMassRatio(&c->surface[k], c->rest_density, &r));
     PetscCall(PetscInfo(c, "%s: added-mass ratio about %g\n", c->surface[k].name, (double)r));
+    if (r >= 0.2 && !responds) PetscFunctionReturn(InputError("sph.solver", "body %s is light (added-mass ratio %.2g, allowed below 0.2): its walls must answer within the pressure solve, which %s does not do; iisph does, and coupler.scheme explicit takes the risk", c->surface[k].name, (double)r, solver));
     if (r >= 0.2) c->compliant = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -141,19 +141,20 @@ PetscErrorCode CouplerResultsWrite(Coupler c, CouplerResults *r, PetscBool field
 
 static PetscErrorCode SummaryFluid(Coupler c, CouplerResults *r, Json json)
 {
-  static const char *const solvers[]    = {"iisph", "iisph_jacobi"};
   static const char *const precisions[] = {"single", "double"};
+  const char              *solver;
   SPHParams               *params;
   PetscInt                 n;
   PetscReal                seconds = 0.0;
 
   PetscFunctionBegin;
   PetscCall(SPHGetParams(c->sph, &params));
+  PetscCall(SPHGetSolver(c->sph, &solver, NULL));
   PetscCall(SPHGetSize(c->sph, &n));
   for (int k = 0; k < PHASE_SOLID; k++) seconds += c->phase[k];
   PetscCall(JsonBegin(json, "fluid"));
   PetscCall(JsonInt(json, "particles", n));
-  PetscCall(JsonString(json, "solver", solvers[params->solver]));
+  PetscCall(JsonString(json, "solver", solver));
   PetscCall(JsonString(json, "precision", precisions[params->precision]));
   PetscCall(JsonReal(json, "iterations_mean", c->iterations_sum / PetscMax(1, c->step)));
   PetscCall(JsonReal(json, "density_error_mean", r->compression_mean_sum / PetscMax(1, r->n_rows)));

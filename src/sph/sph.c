@@ -221,13 +221,16 @@ PetscErrorCode SPHSetUp(SPH sph)
       PetscFunctionReturn(InputError("domain.periodic", "a periodic axis must be at least two supports (%g m) long", (double)(2.0 * sph->h)));
     }
   }
+  sph->method = SPHFindSolver_Internal(par);
+  if (!sph->method->Solve) PetscFunctionReturn(InputError("sph.solver", "%s is not in this version", sph->method->name));
+  if (sph->params.tolerance == 0.0) sph->params.tolerance = sph->method->tolerance;
   LatticeSums(par->kernel, par->spacing, sph->h, &W, &grad2);
   sph->mass        = par->density / W;
   if (sph->particle_volume > 0) sph->mass *= sph->particle_volume / PetscPowReal(par->spacing, 3);
   sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : SPHWallFactor(par->kernel, par->support);
   sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, par->kernel, par->support);
   sph->relax_time  = par->relax_time;
-  if (sph->relax_time == 0.0 && par->solver == SPH_SOLVER_PCG) {
+  if (sph->relax_time == 0.0 && sph->method->relaxes) {
     const PetscReal speed = PetscMax(sqrt(g * sph->h), Norm3(par->mean_velocity));
     sph->relax_time       = speed > 0 ? 0.5 * sph->h / speed : -1.0;
   }
@@ -247,6 +250,7 @@ PetscErrorCode SPHSetUp(SPH sph)
     sph->mode[i] = 1.0 + 0.5 * sin(12.9898 * (double)i); // any start that no symmetry makes orthogonal
   }
   ByCall(SPHCheckState_Internal(sph, "at the start"));
+  if (sph->method->SetUp) ByCall(sph->method->SetUp(sph));
   sph->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -261,6 +265,7 @@ PetscErrorCode SPHView(SPH sph, PetscViewer viewer)
   PetscCall(KeysView(SPHKeys, &sph->params, viewer));
   if (sph->setup) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "particles: %d of %g kg, support %g m\n", (int)sph->n, (double)sph->mass, (double)sph->h));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "solver in use: %s\n", sph->method->name));
     PetscCall(PetscViewerASCIIPrintf(viewer, "wall factor in use: %g, density relaxation time in use: %g s\n", (double)sph->wall_factor, (double)sph->relax_time));
     PetscCall(PetscViewerASCIIPrintf(viewer, "loops: %s\n", sph->table->name));
   }
@@ -278,6 +283,7 @@ PetscErrorCode SPHDestroy(SPH *sph)
     *sph = NULL;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (s->method && s->method->Destroy) PetscCall(s->method->Destroy(s));
   PetscCall(PetscFree(s->x));
   PetscCall(PetscFree(s->v));
   PetscCall(PetscFree(s->p));
@@ -318,6 +324,17 @@ PetscErrorCode SPHGetState(SPH sph, const PetscReal *x[], const PetscReal *v[], 
   if (p) *p = sph->p;
   if (rho) *rho = sph->rho;
   if (id) *id = sph->id;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* the solver that sph.solver means for this fluid, after SPHSetUp(); either pointer may be NULL */
+PetscErrorCode SPHGetSolver(SPH sph, const char *name[], PetscBool *responds)
+{
+  const SPHSolverOps *ops = sph->method ? sph->method : SPHFindSolver_Internal(&sph->params);
+
+  PetscFunctionBegin;
+  if (name) *name = ops->name;
+  if (responds) *responds = ops->responds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,7 +6,16 @@
 
 typedef struct _p_SPH *SPH;
 
-typedef enum { SPH_SOLVER_PCG, SPH_SOLVER_JACOBI } SPHSolver;
+typedef enum {
+  SPH_SOLVER_AUTO,         /* iisph with a free surface, isph without                          */
+  SPH_SOLVER_IISPH,        /* implicit, p >= 0 by projected conjugate gradients (sph_iisph.c)  */
+  SPH_SOLVER_IISPH_JACOBI, /* the same system by the paper's relaxed Jacobi (sph_iisph.c)      */
+  SPH_SOLVER_ISPH,         /* projection with a compact Laplacian (sph_isph.c)                 */
+  SPH_SOLVER_DFSPH,        /* divergence-free SPH (sph_dfsph.c)                                */
+  SPH_SOLVER_PCISPH,       /* predictive-corrective SPH (sph_pcisph.c)                         */
+  SPH_SOLVER_PBF,          /* position-based fluids (sph_pbf.c)                                */
+  SPH_SOLVER_WCSPH         /* weakly compressible: pressure from density (sph_wcsph.c)         */
+} SPHSolver;
 typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2 } SPHKernelType;
 typedef enum { SPH_VISCOUS_MORRIS, SPH_VISCOUS_MONAGHAN } SPHViscousForm;
 typedef enum { SPH_PRECISION_SINGLE, SPH_PRECISION_DOUBLE } SPHPrecision;
@@ -17,7 +26,7 @@ typedef struct {
   PetscReal density;          /* rho0 [kg/m^3]                                                           */
   PetscReal viscosity;        /* mu [Pa s], 0 = inviscid: no viscous pass at all                         */
   PetscReal support;          /* h / dx, support radius over spacing                                     */
-  PetscReal tolerance;        /* mean residual of the pressure solve over rho0                           */
+  PetscReal tolerance;        /* mean residual of the pressure solve over rho0; 0 = of the solver        */
   PetscInt  max_iterations;   /* per step; reaching it is reported                                       */
   PetscReal cfl;              /* of 0.4                                                                  */
   PetscReal time_step;        /* fixed step [s]; 0 = adaptive                                            */
@@ -138,6 +147,9 @@ typedef struct {
   PetscReal body_force[3];         /* of the mean-velocity controller [m/s^2]                              */
 } SPHStats;
 BY_EXTERN PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats);
+
+/* the solver in use (auto resolved by SPHSetUp), and whether it can take the response of compliant walls (method 5.3) */
+BY_EXTERN PetscErrorCode SPHGetSolver(SPH sph, const char *name[], PetscBool *responds);
 
 /* A step that cannot go on (NaN, particle out of the domain) returns BY_ERR_BREAKDOWN; this tells what and where. */
 BY_EXTERN PetscErrorCode SPHGetBreakdown(SPH sph, const char **message);

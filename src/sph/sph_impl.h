@@ -23,10 +23,39 @@ typedef struct {
   PetscInt   capacity;     /* elements allocated                     */
 } SPHSurfaceWork;
 
+/* What a solve is for: the operator is out = S (dt^2 D D^T + response) S y */
+typedef struct {
+  PetscReal   dt;
+  SPHResponse response;
+  void       *ctx;
+} SPHOperator;
+
+/* A pressure solver (sph.solver), one file each. Whatever it does, its effect on a step is one p~ a particle at the configuration of the step,
+   the sum of all its iterations and sub-solves: what SPHGetForces() and SPHPlaneForces_Internal() give walls and proxies is then the impulse
+   that the fluid has lost. Entries may be NULL unless said otherwise; a solver without Solve is refused. */
+typedef struct {
+  const char *name;                                                    /* as in the scene                                                          */
+  PetscReal   tolerance;                                               /* what sph.tolerance 0 means; never 0                                      */
+  PetscBool   relaxes;                                                 /* sph.relax_time 0 means 0.5 h/speed; else all at once                     */
+  PetscBool   responds;                                                /* Solve takes op->response; else the coupler's walls are predicted alone   */
+  PetscErrorCode (*SetUp)(SPH sph);                                    /* end of SPHSetUp: check parameters, allocate sph->method_data                  */
+  PetscErrorCode (*Destroy)(SPH sph);                                  /* free sph->method_data                                                         */
+  PetscErrorCode (*LimitStep)(SPH sph, PetscReal *dt);                 /* lower the adaptive step [s]                                              */
+  PetscErrorCode (*Predict)(SPH sph, PetscReal dt);                    /* add to v* forces of its own, before rate = D v*; rho is current          */
+  PetscErrorCode (*Solve)(SPH sph, const SPHOperator *op);             /* sph->p [Pa], iterations, converged; wall_rate is current; v* and x stay: it may be called again */
+  PetscErrorCode (*Accelerate)(SPH sph, PetscReal dt);                 /* sph->accel = acceleration of v* by pressure; NULL: -D^T p~               */
+  PetscErrorCode (*Drift)(SPH sph, PetscReal dt, PetscReal *path);     /* move x (wrapped by the caller), tell the longest path [m]; NULL: x += dt v */
+} SPHSolverOps;
+
+extern const SPHSolverOps SPHSolverIISPH, SPHSolverIISPHJacobi, SPHSolverISPH, SPHSolverDFSPH, SPHSolverPCISPH, SPHSolverPBF, SPHSolverWCSPH;
+
 struct _p_SPH {
   PETSCHEADER(int);
   SPHParams params;
   PetscBool setup;
+
+  const SPHSolverOps *method;        /* the solver in use                                */
+  void               *method_data;   /* its own data                                     */
 
   /* domain and forces */
   PetscBool has_domain;
@@ -110,17 +139,22 @@ PETSC_INTERN void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt);
 PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);
 PETSC_INTERN PetscErrorCode SPHFilterPredict_Internal(SPH sph, PetscReal dt);
 
-/* sph_pressure.c, sph_mprgp.c: one application of the scaled operator, out = S (dt^2 D D^T + response) S y */
-typedef struct {
-  PetscReal   dt;
-  SPHResponse response;
-  void       *ctx;
-} SPHOperator;
+/* sph_pressure.c: the solver that the parameters ask for */
+PETSC_INTERN const SPHSolverOps *SPHFindSolver_Internal(const SPHParams *params);
+/* one application of the scaled operator, out = S (dt^2 D D^T + response) S y */
 PETSC_INTERN PetscErrorCode SPHApply_Internal(SPH sph, const SPHOperator *op, const PetscReal y[], PetscReal out[]);
+/* S from the diagonal, b scaled, y from the last pressure times `warm`; and p from y */
+PETSC_INTERN void SPHPrepare_Internal(SPH sph, PetscReal dt, PetscReal warm);
+PETSC_INTERN void SPHStorePressure_Internal(SPH sph);
+/* sph->accel = -D^T p~ of sph->p [m/s^2] */
+PETSC_INTERN void SPHPressureAcceleration_Internal(SPH sph);
+/* BY_ERR_BREAKDOWN when a pressure is not a number */
+PETSC_INTERN PetscErrorCode SPHCheckPressure_Internal(SPH sph);
+
+/* sph_mprgp.c, sph_closed.c, sph_iisph.c: what works on the operator */
 PETSC_INTERN PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op);
-PETSC_INTERN PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op);
 /* solve for the density alone, dt = 1, starting from nothing, with the walls at rest */
 PETSC_INTERN PetscErrorCode SPHPackSolve_Internal(SPH sph);
 

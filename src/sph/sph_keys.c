@@ -1,7 +1,7 @@
 /* sph_keys.c - the keys of the section `sph:` */
 #include "sph.h"
 
-static const char *const Solvers[]    = {"iisph", "iisph_jacobi", NULL};
+static const char *const Solvers[]    = {"auto", "iisph", "iisph_jacobi", "isph", "dfsph", "pcisph", "pbf", "wcsph", NULL};
 static const char *const Kernels[]    = {"cubic_spline", "wendland_c2", NULL};
 static const char *const Viscous[]    = {"morris", "monaghan", NULL};
 static const char *const Precisions[] = {"single", "double", NULL};
@@ -13,18 +13,18 @@ const Key SPHKeys[] = {
   {"density", KEY_REAL, FIELD(density), "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "rest density of the fluid"},
   {"viscosity", KEY_REAL, FIELD(viscosity), "Pa s", "0", 0, 1e6, 0, NULL, "dynamic viscosity; 0 = inviscid, walls slip"},
   {"support", KEY_REAL, FIELD(support), "1", "2", 1.5, 3, 0, NULL, "support radius of the kernel over spacing"},
-  {"tolerance", KEY_REAL, FIELD(tolerance), "1", "1e-5", 1e-12, 0.1, 0, NULL, "mean residual of the pressure solve over density (iisph_jacobi: mean compression)"},
+  {"tolerance", KEY_REAL, FIELD(tolerance), "1", "0", 0, 0.1, 0, NULL, "mean residual of the pressure solve over density (iisph_jacobi: mean compression); 0 = 1e-5, with iisph_jacobi 1e-3"},
   {"max_iterations", KEY_INT, FIELD(max_iterations), "1", "200", 1, 100000, 0, NULL, "operator applications in one pressure solve"},
   {"cfl", KEY_REAL, FIELD(cfl), "1", "0.4", 0, 1, KEY_LO_OPEN, NULL, "largest path of a particle in one step over spacing"},
   {"time_step", KEY_REAL, FIELD(time_step), "s", "0", 0, 1e3, 0, NULL, "fixed time step; 0 = adaptive"},
   {"max_time_step", KEY_REAL, FIELD(max_time_step), "s", "0", 0, 1e3, 0, NULL, "upper bound of the adaptive time step; 0 = none"},
   {"relax_time", KEY_REAL, FIELD(relax_time), "s", "0", 0, 1e3, 0, NULL,
-   "time in which a density error is corrected; 0 = 0.5 h/max(sqrt(g h), mean velocity) with pcg, one step with jacobi"},
+   "time in which a density error is corrected; 0 = 0.5 h/max(sqrt(g h), mean velocity) with iisph, one step with iisph_jacobi"},
   {"wall_factor", KEY_REAL, FIELD(wall_factor), "1", "0", 0, 2, 0, NULL, "scales the volume of planar walls; 0 = calibrated"},
   {"noise_damping", KEY_REAL, FIELD(noise_damping), "1", "3", 0, 10, 0, NULL, "rate at which the shortest waves of particle noise decay, over sqrt(g/h); 0 = no filter"},
   {"mean_velocity", KEY_VEC3, FIELD(mean_velocity), "m/s", "0, 0, 0", -1e3, 1e3, 0, NULL, "mean velocity kept by a body force; a zero component is left alone"},
   {"free_surface", KEY_BOOL, FIELD(free_surface), "", "true", 0, 0, 0, NULL, "no negative pressure; false for a domain full of fluid"},
-  {"solver", KEY_CHOICE, FIELD(solver), "", "iisph", 0, 0, 0, Solvers, "pressure solver: IISPH by projected conjugate gradients, or by the paper's relaxed Jacobi"},
+  {"solver", KEY_CHOICE, FIELD(solver), "", "auto", 0, 0, 0, Solvers, "pressure solver; auto = iisph with a free surface, isph without"},
   {"kernel", KEY_CHOICE, FIELD(kernel), "", "cubic_spline", 0, 0, 0, Kernels, "smoothing kernel"},
   {"viscous_form", KEY_CHOICE, FIELD(viscous_form), "", "morris", 0, 0, 0, Viscous, "form of viscosity: morris is the more accurate at walls, monaghan keeps angular momentum"},
   {"precision", KEY_CHOICE, FIELD(precision), "", "single", 0, 0, 0, Precisions, "of the pair loops; positions and velocities are kept in double"},

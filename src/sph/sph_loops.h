@@ -37,6 +37,8 @@ typedef struct {
   const char *name;
   int         real_size;                                                         /* bytes of real                        */
   int  (*Pairs)(const SPHLoops *l, double density[]);                            /* lists, gradients, sum_j m W; 1: capacity too small, 2: no memory */
+  void (*Move)(const SPHLoops *l, const double x[], double density[]);           /* the same lists: gradients, and sum_j m W, of particles at x (n x 3) */
+  void (*Density)(const SPHLoops *l, const double x[], double density[]);        /* sum_j m W alone; gradients stay where they are */
   void (*SetWalls)(const SPHLoops *l, const double G[]);                         /* n x 3 -> wall                        */
   void (*SetPressure)(const SPHLoops *l, const double p[], const double scale[]); /* p scale -> pressure; scale may be NULL */
   void (*SetVelocity)(const SPHLoops *l, const double v[]);                      /* n x 3 -> vector                      */

@@ -160,12 +160,11 @@ static int Collect(const SPHLoops *l, const Candidates *c, int i, int *list, int
   return n;
 }
 
-/* gradients of the pairs of particle i; returns sum_j m W_ij with i itself */
-static double Gradients(const SPHLoops *l, int i, int at, int n)
+/* sum_j m W_ij with i itself, for particles at x; `gradient` gets those of the pairs of particle i, when there is one */
+static double SumPairs(const SPHLoops *l, const double x[], int i, int at, int n, real *gradient)
 {
   const real h = (real)l->h, mass = (real)l->mass;
   const int *list = l->neighbour + at;
-  real      *gradient = (real *)l->gradient + 3 * (size_t)at;
   double     density = (double)SPHPairDensity(l->kernel, mass, 0, h);
 
   for (int first = 0; first < n; first += BLOCK) {
@@ -174,7 +173,7 @@ static double Gradients(const SPHLoops *l, int i, int at, int n)
 
     for (int k = 0; k < m; k++) {
       for (int a = 0; a < 3; a++) {
-        double dx = l->x[3*i + a] - l->x[3*list[first + k] + a];
+        double dx = x[3*i + a] - x[3*list[first + k] + a];
         if (l->grid.periodic[a]) dx -= l->grid.period[a] * rint(dx / l->grid.period[a]);
         d[a][k] = (real)dx;
       }
@@ -186,10 +185,9 @@ static double Gradients(const SPHLoops *l, int i, int at, int n)
       f[k] = SPHPairGradient(l->kernel, mass, r, h);
       w[k] = SPHPairDensity(l->kernel, mass, r, h);
     }
-    for (int k = 0; k < m; k++) {
+    for (int k = 0; gradient && k < m; k++)
       for (int a = 0; a < 3; a++) gradient[3*(first + k) + a] = f[k] * d[a][k];
-      density += (double)w[k];
-    }
+    for (int k = 0; k < m; k++) density += (double)w[k];
   }
   return density;
 }
@@ -223,7 +221,7 @@ static int Pairs(const SPHLoops *l, double density[])
         }
         l->start[i] = at;
         l->count[i] = n;
-        density[i] = Gradients(l, i, at, n);
+        density[i]  = SumPairs(l, l->x, i, at, n, (real *)l->gradient + 3 * (size_t)at);
         at += n;
       }
     }
@@ -231,6 +229,17 @@ static int Pairs(const SPHLoops *l, double density[])
   }
   return failed;
 }
+
+/* the lists as they are, particles at x */
+static void AtPositions(const SPHLoops *l, const double x[], double density[], real *gradient)
+{
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++)
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) density[i] = SumPairs(l, x, i, l->start[i], l->count[i], gradient ? gradient + 3 * (size_t)l->start[i] : NULL);
+}
+
+static void Move(const SPHLoops *l, const double x[], double density[]) { AtPositions(l, x, density, (real *)l->gradient); }
+static void Density(const SPHLoops *l, const double x[], double density[]) { AtPositions(l, x, density, NULL); }
 
 static void SetVec4(const SPHLoops *l, const double a[], void *out)
 {
@@ -392,5 +401,5 @@ static void Filter(const SPHLoops *l, double factor, double a[])
   }
 }
 
-const SPHLoopTable SPH_TABLE = {SPH_LABEL, (int)sizeof(real), Pairs,     SetWalls, SetPressure, SetVelocity, Acceleration,
+const SPHLoopTable SPH_TABLE = {SPH_LABEL, (int)sizeof(real), Pairs, Move,     Density,   SetWalls, SetPressure, SetVelocity, Acceleration,
                                 GetVector, Rate,              Diagonal, Viscosity, Filter};

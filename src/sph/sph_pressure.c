@@ -1,5 +1,5 @@
-/* sph_pressure.c - the pressure that keeps the fluid at rest density (method 1.1): right-hand side, operator, and the paper's
-   relaxed Jacobi; sph_mprgp.c has the conjugate gradients.
+/* sph_pressure.c - the pressure that keeps the fluid at rest density (method 1.1): what the solvers share, right-hand side and operator,
+   and the choice among them.
 
    One unknown a particle, p~ = p/rho0^2. With D the density rate of a velocity and a = -D^T p~ the pressure acceleration
      A = dt^2 D D^T (+ the response of compliant walls, method 5.3)
@@ -37,7 +37,7 @@ PetscErrorCode SPHApply_Internal(SPH sph, const SPHOperator *op, const PetscReal
 }
 
 /* S from the diagonal, b scaled, y from the last pressure times `warm` */
-static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
+void SPHPrepare_Internal(SPH sph, PetscReal dt, PetscReal warm)
 {
   const int       n     = (int)sph->n;
   const PetscReal rho0  = sph->params.density, to_tilde = warm / (rho0 * rho0);
@@ -60,19 +60,37 @@ static void Prepare(SPH sph, PetscReal dt, PetscReal warm)
   }
 }
 
-/* p = rho0^2 S y; not-a-number is a breakdown */
-static PetscErrorCode StorePressure(SPH sph)
+/* p = rho0^2 S y */
+void SPHStorePressure_Internal(SPH sph)
 {
-  const int       n    = (int)sph->n;
-  const PetscReal rho0 = sph->params.density, from_tilde = rho0 * rho0;
-  int             bad  = n;
+  const int       n          = (int)sph->n;
+  const PetscReal from_tilde = sph->params.density * sph->params.density;
+
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) sph->p[i] = from_tilde * sph->scale[i] * sph->y[i];
+}
+
+void SPHPressureAcceleration_Internal(SPH sph)
+{
+  const int       n        = (int)sph->n;
+  const PetscReal to_tilde = 1.0 / (sph->params.density * sph->params.density);
+
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) sph->p_tilde[i] = to_tilde * sph->p[i];
+  sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
+  sph->table->Acceleration(&sph->loops);
+  sph->table->GetVector(&sph->loops, sph->accel);
+}
+
+PetscErrorCode SPHCheckPressure_Internal(SPH sph)
+{
+  const int n   = (int)sph->n;
+  int       bad = n;
 
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static) reduction(min : bad)
-  for (int i = 0; i < n; i++) {
-    sph->p[i] = from_tilde * sph->scale[i] * sph->y[i];
+  for (int i = 0; i < n; i++)
     if (!isfinite(sph->p[i]) && i < bad) bad = i;
-  }
   if (bad < n) {
     const PetscReal *x = sph->x + 3 * bad;
     PetscCall(PetscSNPrintf(sph->breakdown, sizeof(sph->breakdown), "step %d, pressure solve: the pressure of fluid particle %d is not a number: position (%g, %g, %g) m, density %g kg/m^3",
@@ -82,43 +100,13 @@ static PetscErrorCode StorePressure(SPH sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  Relaxed Jacobi of [IISPH sec. 3.2], omega = 1/2: p~ <- max(0, p~ + omega (b - A p~)/a_ii). Stops when the mean compression that
-  would be left, mean max(0, b - A p~)/rho0, is below the tolerance, after at least two iterations.
-*/
-PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op)
+/* the solvers in the order of SPHSolver, after auto */
+static const SPHSolverOps *const Solvers[] = {&SPHSolverIISPH, &SPHSolverIISPHJacobi, &SPHSolverISPH, &SPHSolverDFSPH, &SPHSolverPCISPH, &SPHSolverPBF, &SPHSolverWCSPH};
+
+const SPHSolverOps *SPHFindSolver_Internal(const SPHParams *params)
 {
-  const int       n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  const PetscReal omega = 0.5, dt2 = op->dt * op->dt;
-  const PetscReal allowed = sph->params.tolerance * sph->params.density * (PetscReal)n;
-
-  PetscFunctionBegin;
-  sph->converged = PETSC_FALSE;
-  while (sph->iterations < sph->params.max_iterations) {
-    PetscReal sum;
-
-    PetscCall(SPHApply_Internal(sph, op, sph->y, sph->Adirection));
-#pragma omp parallel for schedule(static)
-    for (int c = 0; c < chunks; c++) {
-      PetscReal left = 0.0;
-
-      for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-        const PetscReal r = sph->rhs[i] - sph->Adirection[i];
-        PetscReal       y = sph->y[i] + omega * r / dt2;
-
-        if (sph->scale[i] > 0 && r > 0) left += r / sph->scale[i];
-        if (sph->params.free_surface && y < 0) y = 0.0;
-        sph->y[i] = y;
-      }
-      sph->partial[c * SPH_SUMS] = left;
-    }
-    SPHSumPartials(sph, 1, &sum);
-    if (sph->iterations >= 2 && sum < allowed) {
-      sph->converged = PETSC_TRUE;
-      break;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (params->solver != SPH_SOLVER_AUTO) return Solvers[params->solver - 1];
+  return params->free_surface || !SPHSolverISPH.Solve ? &SPHSolverIISPH : &SPHSolverISPH;
 }
 
 /*@
@@ -133,47 +121,29 @@ PetscErrorCode SPHSolveJacobi_Internal(SPH sph, const SPHOperator *op)
 - ctx      - its context
 
   Options Database Keys:
-+ -sph_solver (iisph|iisph_jacobi) - projected conjugate gradients, or relaxed Jacobi
-. -sph_tolerance <1e-5>      - pcg: mean |projected residual| / rho0 over particles with pressure; jacobi: mean compression
++ -sph_solver (auto|iisph|...) - see SPHSolver
+. -sph_tolerance <0>         - iisph: mean |projected residual| / rho0 over particles with pressure; iisph_jacobi: mean compression
 - -sph_max_iterations <200>  - operator applications; reaching them is told by SPHStats.converged
 
   Errors:
   BY_ERR_BREAKDOWN when a pressure is not a number
 
-  References:
-  Ihmsen et al., IEEE TVCG 20 (2014), doi:10.1109/TVCG.2013.105; Dostal, Optimal Quadratic Programming Algorithms (2009) ch. 5
+  References: in the file of each solver
 
-  Tests: tests/unit/sph/test_pressure.c
+  Tests: tests/unit/sph/test_pressure.c, test_solvers.c
 @*/
 PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, void *ctx)
 {
-  const SPHOperator op     = {dt, response, ctx};
-  const PetscBool   jacobi = (PetscBool)(sph->params.solver == SPH_SOLVER_JACOBI);
+  const SPHOperator op = {dt, response, ctx};
 
   PetscFunctionBegin;
+  PetscCheck(!response || sph->method->responds, PetscObjectComm((PetscObject)sph), PETSC_ERR_SUP, "solver %s takes no response of compliant walls: ask SPHGetSolver()", sph->method->name);
   PetscCall(PetscLogEventBegin(SPH_Pressure, sph, 0, 0, 0));
   PetscCall(SPHWallRate_Internal(sph));
-  Prepare(sph, dt, jacobi ? 0.5 : 1.0);
   sph->iterations = 0;
-  if (!jacobi) PetscCall(SPHFindNorm_Internal(sph, &op));
-  if (jacobi) PetscCall(SPHSolveJacobi_Internal(sph, &op));
-  else if (sph->params.free_surface) PetscCall(SPHSolveMPRGP_Internal(sph, &op));
-  else PetscCall(SPHSolveCG_Internal(sph, &op));
-  ByCall(StorePressure(sph));
+  ByCall(sph->method->Solve(sph, &op));
+  ByCall(SPHCheckPressure_Internal(sph));
   PetscCall(SPHPlaneForces_Internal(sph));
   PetscCall(PetscLogEventEnd(SPH_Pressure, sph, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SPHPackSolve_Internal(SPH sph)
-{
-  const SPHOperator op = {1.0, NULL, NULL};
-
-  PetscFunctionBegin;
-  Prepare(sph, 1.0, 0.0);
-  sph->iterations = 0;
-  PetscCall(SPHFindNorm_Internal(sph, &op));
-  PetscCall(SPHSolveMPRGP_Internal(sph, &op));
-  ByCall(StorePressure(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

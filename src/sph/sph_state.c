@@ -102,13 +102,9 @@ static PetscReal LargestCompression(SPH sph)
 static void Displace(SPH sph)
 {
   const int       n = (int)sph->n;
-  const PetscReal limit = 0.1 * sph->params.spacing, to_tilde = 1.0 / PetscSqr(sph->params.density);
+  const PetscReal limit = 0.1 * sph->params.spacing;
 
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; i++) sph->p_tilde[i] = to_tilde * sph->p[i];
-  sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
-  sph->table->Acceleration(&sph->loops);
-  sph->table->GetVector(&sph->loops, sph->accel);
+  SPHPressureAcceleration_Internal(sph);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     const PetscReal *a      = sph->accel + 3 * i;
@@ -154,7 +150,7 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
     }
     if (sweep == max_sweeps || (MeanCompression(sph) < tol && LargestCompression(sph) < 20.0 * tol)) break;
     sph->relax_time       = 0.0;
-    sph->params.tolerance = PetscMax(tolerance, 0.05 * tol);
+    sph->params.tolerance = PetscMax(SPHSolverIISPH.tolerance, 0.05 * tol);
     ByCall(SPHPackSolve_Internal(sph));
     sph->relax_time       = relax;
     sph->params.tolerance = tolerance;

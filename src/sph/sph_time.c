@@ -51,6 +51,7 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
   if (speed > 0) step = PetscMin(step, par->cfl * par->spacing / speed);
   if (sph->accel_max > 0) step = PetscMin(step, 0.25 * sqrt(sph->h / sph->accel_max));
   if (nu > 0) step = PetscMin(step, 0.125 * sph->h * sph->h / nu);
+  if (sph->method->LimitStep) PetscCall(sph->method->LimitStep(sph, &step));
   if (par->max_time_step > 0) step = PetscMin(step, par->max_time_step);
   if (sph->dt_last > 0) step = PetscMin(step, 1.1 * sph->dt_last);
   *dt = step;
@@ -109,6 +110,7 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
   }
   if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
   if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
+  if (sph->method->Predict) PetscCall(sph->method->Predict(sph, dt));
   sph->table->SetVelocity(&sph->loops, sph->v_star);
   sph->table->Rate(&sph->loops, 1.0, NULL, sph->rate);
   PetscCall(PetscLogEventEnd(SPH_Predict, sph, 0, 0, 0));
@@ -129,17 +131,13 @@ static PetscReal Wrap(PetscReal x, PetscReal lo, PetscReal hi)
 @*/
 PetscErrorCode SPHKick(SPH sph, PetscReal dt)
 {
-  const int       n        = (int)sph->n;
-  const PetscReal to_tilde = 1.0 / (sph->params.density * sph->params.density);
-  PetscReal       accel2   = 0.0;
+  const int n      = (int)sph->n;
+  PetscReal accel2 = 0.0;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; i++) sph->p_tilde[i] = to_tilde * sph->p[i];
-  sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
-  sph->table->Acceleration(&sph->loops);
-  sph->table->GetVector(&sph->loops, sph->accel);
+  if (sph->method->Accelerate) PetscCall(sph->method->Accelerate(sph, dt));
+  else SPHPressureAcceleration_Internal(sph);
 #pragma omp parallel for schedule(static) reduction(max : accel2)
   for (int i = 0; i < n; i++) {
     PetscReal a2 = 0.0;
@@ -158,6 +156,25 @@ PetscErrorCode SPHKick(SPH sph, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* x += dt v */
+static void Drift(SPH sph, PetscReal dt, PetscReal *path)
+{
+  const int n      = (int)sph->n;
+  PetscReal speed2 = 0.0;
+
+#pragma omp parallel for schedule(static) reduction(max : speed2)
+  for (int i = 0; i < n; i++) {
+    PetscReal v2 = 0.0;
+
+    for (int k = 0; k < 3; k++) {
+      sph->x[3 * i + k] += dt * sph->v[3 * i + k];
+      v2 += sph->v[3 * i + k] * sph->v[3 * i + k];
+    }
+    speed2 = PetscMax(speed2, v2);
+  }
+  *path = dt * sqrt(speed2);
+}
+
 /*@
   SPHDrift - second half of the end of a step: x += dt v, periodic axes wrapped
 
@@ -166,26 +183,18 @@ PetscErrorCode SPHKick(SPH sph, PetscReal dt)
 @*/
 PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
 {
-  const int n      = (int)sph->n;
-  PetscReal speed2 = 0.0;
+  const int n = (int)sph->n;
+  PetscReal path;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
-#pragma omp parallel for schedule(static) reduction(max : speed2)
-  for (int i = 0; i < n; i++) {
-    PetscReal v2 = 0.0;
-
-    for (int k = 0; k < 3; k++) {
-      const PetscReal v = sph->v[3 * i + k];
-      PetscReal       x = sph->x[3 * i + k] + dt * v;
-
-      if (sph->periodic >> k & 1) x = Wrap(x, sph->min[k], sph->max[k]);
-      sph->x[3 * i + k] = x;
-      v2 += v * v;
-    }
-    speed2 = PetscMax(speed2, v2);
-  }
-  sph->grid_drift += dt * sqrt(speed2);
+  if (sph->method->Drift) PetscCall(sph->method->Drift(sph, dt, &path));
+  else Drift(sph, dt, &path);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++)
+      if (sph->periodic >> k & 1) sph->x[3 * i + k] = Wrap(sph->x[3 * i + k], sph->min[k], sph->max[k]);
+  sph->grid_drift += path;
   sph->dt_last = dt;
   sph->step++;
   ByCall(SPHCheckState_Internal(sph, "at its end"));

@@ -102,7 +102,7 @@ static void SolversAgree(void **state)
     }
     sph->params.tolerance      = variant == 2 ? 1e-7 : 1e-10;
     sph->params.max_iterations = 100000;
-    if (variant == 1) sph->params.solver = SPH_SOLVER_JACOBI;
+    if (variant == 1) sph->params.solver = SPH_SOLVER_IISPH_JACOBI;
     assert_petsc(SPHPredict(sph, dt));
     assert_petsc(SPHSolvePressure(sph, dt, NULL, NULL));
     assert_true(sph->converged);
