@@ -1,10 +1,14 @@
-/* bench_sph.c - speed and error of the fluid alone, both from one run: water poured into a tank as a lattice comes to rest.
-     bench.sph -n 24,24,40 -end 1 [-sph_solver iisph_jacobi ...] [-pack] [-quiet] [-length 1.0] [-cpu]
+/* bench_sph.c - speed and error of the fluid alone, both from one run: water poured into a tank as a lattice comes to rest, or a dam breaks.
+     bench.sph [-all]                                       every solver beside the others: still water, then a dam break
+     bench.sph -n 24,24,40 -end 1 [-sph_solver dfsph ...] [-pack] [-quiet] [-length 1.0] [-cpu] [-json FILE]
     n particles along x, y, z; walls on five sides (-open_sides: periodic in x and y); depth H = n_z dx = 0.4 m. Prints compression,
    pressure against rho g z, force on the floor, speed and offset of the wetted surface, then times by phase. A tank longer than the
-   water (-length [m]) makes a dam break; then energies and the particle deepest in a wall are what to look at. */
+   water (-length [m]) makes a dam break; then energies, the front and the particle deepest in a wall are what to look at. -cpu: time of the
+   processor, for machines that others use too. -json: all that was measured, and how front, energies and pressure went. */
 #include <math.h>
 #include <petsctime.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "sph/sph.h"
@@ -12,15 +16,34 @@
 enum { NEIGHBORS, PREDICT, PRESSURE, FORCES, ADVANCE, N_PHASES };
 static const char *const PhaseNames[N_PHASES] = {"neighbours and density", "predict", "pressure", "forces and gauges", "advance"};
 
+#define N_SAMPLES 100 /* of the series, evenly in time */
+enum { TIME, FRONT, TOP, KINETIC, POTENTIAL, FAR_FORCE, COMPRESSION_MEAN, COMPRESSION_MAX, N_SERIES };
+static const char *const SeriesNames[N_SERIES] = {"time", "front", "top", "kinetic", "potential", "far_force", "compression_mean", "compression_max"};
+
+/* what is run */
 typedef struct {
-  PetscReal      depth, area, lo[2], hi[2], g; /* of the still water; walls stand at lo and hi of x, y */
-  PetscBool      walls, cpu;     /* cpu: time of the processor, for machines that others use too */
+  PetscInt  n[3];
+  PetscReal end, from, length; /* [s], [s], [m] */
+  PetscBool open_sides, cpu, pack, quiet;
+  int       solver;            /* SPHSolver, or -1: what the options say */
+} Case;
+
+/* what came out */
+typedef struct {
+  PetscReal      depth, lo[2], hi[2], g; /* of the still water; walls stand at lo and hi of x, y */
+  PetscBool      walls, cpu;
   PetscReal      phase[N_PHASES + 1];
   PetscLogDouble start;
   PetscReal      gauge[3], gauge_sum[3], gauge_square[3]; /* depths of gauges in the middle of the tank over H; p/(rho g z) */
   PetscReal      deepest, energy; /* smallest distance from a wall [m]; kinetic and potential energy at the start [J] */
   PetscReal      force_sum, force_square, height_sum, error_sum, iterations, compression, compression_max;
-  PetscInt       n_steps, n_measured, not_converged, worst;
+  PetscReal      compression_top, compression_peak, energy_left; /* over the whole run: largest mean, largest of one particle; energy over the first */
+  PetscReal      dt_min, time, from, mass, dx, far_impulse, since;
+  PetscReal      series[N_SAMPLES + 1][N_SERIES];
+  PetscInt       n, n_steps, n_measured, not_converged, worst, n_samples;
+  SPHStats       stats;
+  PetscErrorCode ierr;
+  char           reason[512];
 } Run;
 
 static PetscErrorCode Lap(Run *run, int phase)
@@ -80,7 +103,40 @@ static PetscErrorCode Deepest(SPH sph, Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Step(SPH sph, Run *run, PetscReal *time, PetscReal from)
+static int Larger(const void *a, const void *b)
+{
+  const PetscReal x = *(const PetscReal *)a, y = *(const PetscReal *)b;
+  return x > y ? -1 : x < y;
+}
+
+/* one row of the series: the front is where all but 1/2 % of the particles are behind, the top the same upwards */
+static PetscErrorCode Sample(SPH sph, Run *run)
+{
+  PetscReal       *row = run->series[run->n_samples], *sorted;
+  const PetscReal *x;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(run->n, &sorted));
+  PetscCall(SPHGetState(sph, &x, NULL, NULL, NULL, NULL));
+  for (int k = 0; k < 2; k++) {
+    for (PetscInt i = 0; i < run->n; i++) sorted[i] = x[3 * i + 2 * k];
+    qsort(sorted, (size_t)run->n, sizeof(*sorted), Larger);
+    row[FRONT + k] = sorted[run->n / 200];
+  }
+  PetscCall(PetscFree(sorted));
+  row[TIME]             = run->time;
+  row[KINETIC]          = run->stats.kinetic;
+  row[POTENTIAL]        = run->stats.potential;
+  row[FAR_FORCE]        = run->time > run->since ? run->far_impulse / (run->time - run->since) : 0.0;
+  row[COMPRESSION_MEAN] = run->stats.compression_mean;
+  row[COMPRESSION_MAX]  = run->stats.compression_max;
+  run->far_impulse      = 0.0;
+  run->since            = run->time;
+  run->n_samples++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Step(SPH sph, Run *run)
 {
   PetscReal dt, force[18], error, height;
   SPHStats  stats;
@@ -100,14 +156,19 @@ static PetscErrorCode Step(SPH sph, Run *run, PetscReal *time, PetscReal from)
   PetscCall(Lap(run, FORCES));
   ByCall(SPHAdvance(sph, dt));
   PetscCall(Lap(run, ADVANCE));
-  *time += dt;
+  run->time += dt;
   run->n_steps++;
   run->iterations += stats.iterations;
+  run->stats  = stats;
+  run->dt_min = PetscMin(run->dt_min, dt);
+  run->far_impulse += dt * force[3];
   PetscCall(Deepest(sph, run));
   if (run->n_steps == 1) run->energy = stats.kinetic + stats.potential;
   run->worst = PetscMax(run->worst, stats.iterations);
   run->not_converged += !stats.converged;
-  if (*time >= from) {
+  run->compression_top  = PetscMax(run->compression_top, stats.compression_mean);
+  run->compression_peak = PetscMax(run->compression_peak, stats.compression_max);
+  if (run->time >= run->from) {
     PetscCall(Measure(sph, run, &error, &height));
     run->n_measured++;
     for (int k = 0; k < 3; k++) {
@@ -129,44 +190,75 @@ static PetscErrorCode Step(SPH sph, Run *run, PetscReal *time, PetscReal from)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Report(SPH sph, Run *run, PetscReal time, PetscReal from)
+static PetscReal Seconds(const Run *run)
 {
-  PetscReal mass, total = 0.0, weight, mean, dx;
-  PetscInt  n;
-  SPHStats  stats;
-  SPHParams *par;
+  PetscReal total = 0.0;
+
+  for (int k = 0; k < N_PHASES; k++) total += run->phase[k];
+  return total;
+}
+
+/* root mean square of p/(rho g z) - 1 of gauge k, or about its mean alone */
+static PetscReal GaugeError(const Run *run, int k, PetscBool noise)
+{
+  const PetscReal mean = run->gauge_sum[k] / run->n_measured, about = noise ? mean : 1.0;
+  return sqrt(PetscMax(0.0, run->gauge_square[k] / run->n_measured - 2.0 * about * mean + about * about));
+}
+
+static PetscReal Weight(const Run *run) { return run->n * run->mass * run->g; }
+
+static PetscReal ForceNoise(const Run *run)
+{
+  const PetscReal mean = run->force_sum / run->n_measured;
+  return sqrt(PetscMax(0.0, run->force_square / run->n_measured - mean * mean)) / Weight(run);
+}
+
+static PetscErrorCode Report(const Run *run)
+{
+  const SPHStats *s = &run->stats;
 
   PetscFunctionBegin;
-  PetscCall(SPHGetMass(sph, &mass));
-  PetscCall(SPHGetSize(sph, &n));
-  PetscCall(SPHGetStats(sph, &stats));
-  PetscCall(SPHGetParams(sph, &par));
-  dx     = par->spacing;
-  weight = n * mass * run->g;
-  mean   = run->force_sum / run->n_measured;
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "particles %d, steps %d, time %.3f s, measured from %.3f s\n", (int)n, (int)run->n_steps, (double)time, (double)from));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "compression: mean %.2e, largest %.2e\n", (double)(run->compression / run->n_measured), (double)run->compression_max));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "particles %d, steps %d, time %.3f s, measured from %.3f s\n", (int)run->n, (int)run->n_steps, (double)run->time, (double)run->from));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "compression: mean %.2e, largest %.2e; over the whole run %.2e, %.2e\n", (double)(run->compression / run->n_measured), (double)run->compression_max,
+                        (double)run->compression_top, (double)run->compression_peak));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "pressure against rho g z: mean error %.2f %%\n", 100.0 * (double)(run->error_sum / run->n_measured)));
-  for (int k = 0; k < 3; k++) {
-    const PetscReal p = run->gauge_sum[k] / run->n_measured;
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "gauge at %.2f of the depth / rho g z: %.4f, rms %.2f %%\n", (double)run->gauge[k], (double)p,
-                          100.0 * sqrt(PetscMax(0.0, (double)(run->gauge_square[k] / run->n_measured - p * p)))));
-  }
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "force on the floor / weight: %.5f, noise (rms) %.2f %%\n", (double)(mean / weight),
-                        100.0 * sqrt(PetscMax(0.0, (double)(run->force_square / run->n_measured - mean * mean))) / (double)weight));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "offset of the wetted surface: %.3f dx\n", (double)((run->height_sum / run->n_measured - 0.5 * run->depth) / dx)));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "speed / sqrt(g H): rms %.2f %%, largest %.2f %%\n", 100.0 * (double)(stats.speed_rms / sqrt(run->g * run->depth)),
-                        100.0 * (double)(stats.speed_max / sqrt(run->g * run->depth))));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "smallest distance from a wall: %.3f dx; energy left: %.4f of what was there at first\n", (double)(run->deepest / dx),
-                        (double)((stats.kinetic + stats.potential) / run->energy)));
+  for (int k = 0; k < 3; k++)
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "gauge at %.2f of the depth / rho g z: %.4f, rms %.2f %%\n", (double)run->gauge[k], (double)(run->gauge_sum[k] / run->n_measured), 100.0 * (double)GaugeError(run, k, PETSC_TRUE)));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "force on the floor / weight: %.5f, noise (rms) %.2f %%\n", (double)(run->force_sum / run->n_measured / Weight(run)), 100.0 * (double)ForceNoise(run)));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "offset of the wetted surface: %.3f dx\n", (double)((run->height_sum / run->n_measured - 0.5 * run->depth) / run->dx)));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "speed / sqrt(g H): rms %.2f %%, largest %.2f %%\n", 100.0 * (double)(s->speed_rms / sqrt(run->g * run->depth)), 100.0 * (double)(s->speed_max / sqrt(run->g * run->depth))));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "smallest distance from a wall: %.3f dx; energy left: %.4f of what was there at first\n", (double)(run->deepest / run->dx), (double)run->energy_left));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "operator applications a step: mean %.2f, most %d; solves that stopped at the limit: %d\n", (double)(run->iterations / run->n_steps),
                         (int)run->worst, (int)run->not_converged));
-  for (int k = 0; k < N_PHASES; k++) {
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-24s %8.3f ms a step\n", PhaseNames[k], 1e3 * (double)(run->phase[k] / run->n_steps)));
-    total += run->phase[k];
+  for (int k = 0; k < N_PHASES; k++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-24s %8.3f ms a step\n", PhaseNames[k], 1e3 * (double)(run->phase[k] / run->n_steps)));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-24s %8.3f ms a step; pressure %.3f ms an operator application\n", "all", 1e3 * (double)(Seconds(run) / run->n_steps),
+                        1e3 * (double)(run->phase[PRESSURE] / PetscMax(1.0, run->iterations))));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* everything as JSON, for reports */
+static PetscErrorCode WriteJSON(const Run *run, const char path[])
+{
+  FILE *file = fopen(path, "w");
+
+  PetscFunctionBegin;
+  PetscCheck(file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s", path);
+  fprintf(file, "{\"particles\": %d, \"steps\": %d, \"time\": %.9g, \"seconds\": %.6g, \"dt_min\": %.9g, \"iterations\": %.6g, \"worst\": %d, \"not_converged\": %d,\n", (int)run->n, (int)run->n_steps,
+          (double)run->time, (double)Seconds(run), (double)run->dt_min, (double)(run->iterations / PetscMax(1, run->n_steps)), (int)run->worst, (int)run->not_converged);
+  fprintf(file, " \"stopped\": \"%s\", \"deepest\": %.6g, \"energy_left\": %.6g, \"weight\": %.9g, \"energy\": %.9g, \"compression_peak\": %.6g, \"compression_top\": %.6g,\n", run->ierr ? run->reason : "",
+          (double)(run->deepest / run->dx), (double)run->energy_left, (double)Weight(run), (double)run->energy, (double)run->compression_peak, (double)run->compression_top);
+  if (run->n_measured) {
+    fprintf(file, " \"gauge_error\": [%.6g, %.6g, %.6g], \"force\": %.9g, \"force_noise\": %.6g, \"offset\": %.6g, \"compression\": %.6g, \"speed_rms\": %.6g,\n", (double)GaugeError(run, 0, PETSC_FALSE),
+            (double)GaugeError(run, 1, PETSC_FALSE), (double)GaugeError(run, 2, PETSC_FALSE), (double)(run->force_sum / run->n_measured / Weight(run)), (double)ForceNoise(run),
+            (double)((run->height_sum / run->n_measured - 0.5 * run->depth) / run->dx), (double)(run->compression / run->n_measured), (double)(run->stats.speed_rms / sqrt(run->g * run->depth)));
   }
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-24s %8.3f ms a step; pressure %.3f ms an operator application\n", "all", 1e3 * (double)(total / run->n_steps),
-                        1e3 * (double)(run->phase[PRESSURE] / run->iterations)));
+  for (int k = 0; k < N_PHASES; k++) fprintf(file, " \"%s\": %.6g,\n", PhaseNames[k], (double)run->phase[k]);
+  for (int q = 0; q < N_SERIES; q++) {
+    fprintf(file, " \"%s\": [", q == TIME ? "times" : SeriesNames[q]);
+    for (PetscInt k = 0; k < run->n_samples; k++) fprintf(file, "%s%.7g", k ? ", " : "", (double)run->series[k][q]);
+    fprintf(file, "]%s\n", q + 1 < N_SERIES ? "," : "}");
+  }
+  PetscCheck(!fclose(file), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s", path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,73 +282,173 @@ static PetscErrorCode Fill(SPH sph, const PetscInt n[3], PetscReal dx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Main(void)
+/* a line now and then */
+static PetscErrorCode Tell(SPH sph, const Run *run)
 {
-  SPH              sph;
-  SPHParams       *par;
-  Run              run;
-  PetscInt         n[3] = {24, 24, 40}, n_read = 3;
-  PetscReal        end = 1.0, from = -1.0, length = 0.0, time = 0.0, next = 0.0, dx, particle_mass;
-  PetscBool        open_sides = PETSC_FALSE, quiet = PETSC_FALSE, pack = PETSC_FALSE;
-  const PetscReal  g[3] = {0, 0, -9.81}, lo[3] = {0, 0, 0};
+  PetscReal       f[18], error, height;
+  const SPHStats *s = &run->stats;
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(&run, sizeof(run)));
-  PetscCall(PetscOptionsGetIntArray(NULL, NULL, "-n", n, &n_read, NULL));
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-end", &end, NULL));
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-from", &from, NULL));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-open_sides", &open_sides, NULL));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-cpu", &run.cpu, NULL));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-pack", &pack, NULL));
-  if (from < 0) from = 0.5 * end;
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-length", &length, NULL));
-  dx = 0.4 / n[2];
-  const PetscReal hi[3] = {PetscMax(length, n[0] * dx), n[1] * dx, 0.8};
+  PetscCall(SPHGetWallForces(sph, f));
+  PetscCall(Measure(sph, (Run *)run, &error, &height));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "t %.3f dt %.2e E %.4f it %d floor %.4f rms %.4f max %.3f comp %.1e %.1e offset %.3f p error %.3f\n", (double)run->time, (double)(run->time / run->n_steps),
+                        (double)((s->kinetic + s->potential) / run->energy), (int)s->iterations, (double)(-f[14] / Weight(run)), (double)(s->speed_rms / sqrt(run->g * run->depth)), (double)s->speed_max,
+                        (double)s->compression_mean, (double)s->compression_max, (double)((height - 0.5 * run->depth) / run->dx), (double)error));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-  PetscCall(SPHCreate(PETSC_COMM_SELF, &sph));
+static PetscErrorCode SetUp(SPH sph, const Case *c, Run *run)
+{
+  const PetscReal g[3] = {0, 0, -9.81}, lo[3] = {0, 0, 0}, dx = 0.4 / c->n[2], hi[3] = {PetscMax(c->length, c->n[0] * dx), c->n[1] * dx, 0.8};
+  SPHParams      *par;
+
+  PetscFunctionBegin;
   PetscCall(SPHGetParams(sph, &par));
   par->spacing = dx;
   PetscCall(SPHSetFromOptions(sph));
-  PetscCall(SPHSetDomain(sph, lo, hi, open_sides ? 1u << 4 : 31u, open_sides ? 3u : 0u));
+  if (c->solver >= 0) par->solver = c->solver;
+  PetscCall(SPHSetDomain(sph, lo, hi, c->open_sides ? 1u << 4 : 31u, c->open_sides ? 3u : 0u));
   PetscCall(SPHSetGravity(sph, g));
-  PetscCall(Fill(sph, n, dx));
+  PetscCall(Fill(sph, c->n, dx));
   ByCall(SPHSetUp(sph));
-  if (pack) ByCall(SPHPack(sph, 1e-3, 50, NULL, NULL));
-  run.walls   = (PetscBool)!open_sides;
-  run.deepest = 1.0;
-  run.g     = 9.81;
-  for (int k = 0; k < 3; k++) run.gauge[k] = 0.25 * (k + 1);
-  for (int k = 0; k < 2; k++) run.hi[k] = hi[k];
-  PetscCall(SPHGetMass(sph, &particle_mass));
-  run.area  = hi[0] * hi[1];
-  run.depth = n[0] * n[1] * n[2] * particle_mass / par->density / run.area;
-  while (time < end) {
-    ByCall(Step(sph, &run, &time, from));
-    if (!quiet && time >= next) {
-      SPHStats  s;
-      PetscReal f[18], error, height;
+  if (c->pack) ByCall(SPHPack(sph, 1e-3, 50, NULL, NULL));
+  PetscCall(SPHGetSize(sph, &run->n));
+  PetscCall(SPHGetMass(sph, &run->mass));
+  run->walls   = (PetscBool)!c->open_sides;
+  run->cpu     = c->cpu;
+  run->deepest = 1.0;
+  run->dt_min  = PETSC_MAX_REAL;
+  run->from    = c->from;
+  run->g       = 9.81;
+  run->dx      = dx;
+  for (int k = 0; k < 3; k++) run->gauge[k] = 0.25 * (k + 1);
+  for (int k = 0; k < 2; k++) run->hi[k] = hi[k];
+  run->depth = run->n * run->mass / par->density / (hi[0] * hi[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-      PetscCall(SPHGetStats(sph, &s));
-      PetscCall(SPHGetWallForces(sph, f));
-      PetscCall(Measure(sph, &run, &error, &height));
-      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "t %.3f dt %.2e E %.4f it %d floor %.4f rms %.4f max %.3f comp %.1e %.1e offset %.3f p error %.3f\n", (double)time, (double)(time / run.n_steps), (double)((s.kinetic + s.potential) / run.energy), (int)s.iterations,
-                            (double)(f[14] / (-particle_mass * n[0] * n[1] * n[2] * run.g)), (double)(s.speed_rms / sqrt(run.g * run.depth)), (double)s.speed_max, (double)s.compression_mean, (double)s.compression_max,
-                            (double)((height - 0.5 * run.depth) / dx), (double)error));
-      next += end / 20;
+static PetscErrorCode Steps(SPH sph, const Case *c, Run *run)
+{
+  PetscReal next = 0.0;
+
+  PetscFunctionBegin;
+  while (run->time < c->end) {
+    ByCall(Step(sph, run));
+    if (run->n_samples <= N_SAMPLES && run->time >= run->n_samples * c->end / N_SAMPLES) PetscCall(Sample(sph, run));
+    if (!c->quiet && run->time >= next) {
+      PetscCall(Tell(sph, run));
+      next += c->end / 20;
     }
   }
-  run.force_sum = -run.force_sum;
-  PetscCall(Report(sph, &run, time, from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* run->ierr tells whether it came to its end */
+static PetscErrorCode RunCase(const Case *c, Run *run)
+{
+  SPH         sph;
+  const char *reason;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(run, sizeof(*run)));
+  PetscCall(SPHCreate(PETSC_COMM_SELF, &sph));
+  run->ierr = SetUp(sph, c, run);
+  if (!run->ierr) run->ierr = Steps(sph, c, run);
+  if (run->ierr && run->ierr != BY_ERR_BREAKDOWN && run->ierr != BY_ERR_INPUT) PetscCall(run->ierr);
+  PetscCall(SPHGetBreakdown(sph, &reason));
+  PetscCall(PetscStrncpy(run->reason, run->ierr == BY_ERR_INPUT ? "refused" : reason ? reason : "", sizeof(run->reason)));
+  run->force_sum   = -run->force_sum;
+  run->energy_left = (run->stats.kinetic + run->stats.potential) / run->energy;
   PetscCall(SPHDestroy(&sph));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* every solver on the same water */
+static PetscErrorCode Compare(Case *c)
+{
+  const Key *key = SPHKeys;
+  Run       *run;
+
+  PetscFunctionBegin;
+  while (strcmp(key->name, "solver")) key++;
+  PetscCall(PetscNew(&run));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %d x %d x %d particles, %g s, %s time\n", c->length > 0 ? "dam break" : "still water", (int)c->n[0], (int)c->n[1], (int)c->n[2], (double)c->end, c->cpu ? "processor" : "wall"));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-14s %9s %7s %8s %9s %9s %10s %10s %9s %8s\n", "solver", "seconds", "steps", "ms/step", "applied", c->length > 0 ? "front" : "gauges",
+                        c->length > 0 ? "energy" : "floor", c->length > 0 ? "deepest" : "speed", "mean", "largest"));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-14s %9s %7s %8s %9s %9s %10s %10s %9s %8s\n", "", "", "", "", "a step", c->length > 0 ? "m" : "rms, %", c->length > 0 ? "kept" : "noise, %", c->length > 0 ? "dx" : "rms, %",
+                        "compr.", "compr."));
+  for (int k = 0; key->choices[k]; k++) {
+    if (!strcmp(key->choices[k], "auto")) continue;
+    c->solver = k;
+    PetscCall(RunCase(c, run));
+    if (run->ierr) {
+      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-14s %s\n", key->choices[k], run->reason));
+      continue;
+    }
+    const PetscBool dam = (PetscBool)(c->length > 0);
+    PetscReal       gauge = 0.0;
+
+    for (int q = 0; q < 3; q++) gauge += GaugeError(run, q, PETSC_FALSE) / 3.0;
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%-14s %9.2f %7d %8.3f %9.1f %9.3f %10.3f %10.3f %9.1e %8.1e\n", key->choices[k], (double)Seconds(run), (int)run->n_steps, 1e3 * (double)(Seconds(run) / run->n_steps),
+                          (double)(run->iterations / run->n_steps), (double)(dam ? run->series[run->n_samples - 1][FRONT] : 100.0 * gauge), (double)(dam ? run->energy_left : 100.0 * ForceNoise(run)),
+                          (double)(dam ? run->deepest / run->dx : 100.0 * run->stats.speed_rms / sqrt(run->g * run->depth)), (double)(dam ? run->compression_top : run->compression / run->n_measured),
+                          (double)(dam ? run->compression_peak : run->compression_max)));
+  }
+  PetscCall(PetscFree(run));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CompareAll(void)
+{
+  Case tank = {{12, 12, 20}, 3.0, 2.0, 0.0, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, -1};
+  Case dam  = {{16, 8, 24}, 0.25, 0.0, 1.2, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, -1};
+
+  PetscFunctionBegin;
+  PetscCall(Compare(&tank));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n"));
+  PetscCall(Compare(&dam));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Main(PetscBool bare)
+{
+  Case      c = {{24, 24, 40}, 1.0, -1.0, 0.0, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, PETSC_FALSE, -1};
+  Run      *run;
+  PetscInt  n_read = 3;
+  PetscBool all = bare, json;
+  char      path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-all", &all, NULL));
+  if (all) {
+    PetscCall(CompareAll());
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscOptionsGetIntArray(NULL, NULL, "-n", c.n, &n_read, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-end", &c.end, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-from", &c.from, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-length", &c.length, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-open_sides", &c.open_sides, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-cpu", &c.cpu, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &c.quiet, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-pack", &c.pack, NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-json", path, sizeof(path), &json));
+  if (c.from < 0) c.from = 0.5 * c.end;
+  PetscCall(PetscNew(&run));
+  PetscCall(RunCase(&c, run));
+  if (json) PetscCall(WriteJSON(run, path));
+  if (run->ierr) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "stopped: %s\n", run->reason));
+  else PetscCall(Report(run));
+  PetscCall(PetscFree(run));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 int main(int argc, char **argv)
 {
-  PetscErrorCode ierr;
+  const PetscBool bare = (PetscBool)(argc == 1);
+  PetscErrorCode  ierr;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  ierr = Main();
+  ierr = Main(bare);
   return PetscFinalize() || ierr ? 1 : 0;
 }
