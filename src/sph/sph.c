@@ -46,6 +46,8 @@ PetscErrorCode SPHCreate(MPI_Comm comm, SPH *sph)
   PetscCall(PetscHeaderCreate(s, SPH_CLASSID, "SPH", "incompressible fluid of smoothed particles", "SPH", comm, SPHDestroy, SPHView));
   PetscCall(KeysSetDefaults(SPHKeys, &s->params));
   s->converged = PETSC_TRUE;
+  PetscCall(SPHAddArray_Internal(s, &s->x, 3 * sizeof(PetscReal)));
+  PetscCall(SPHAddArray_Internal(s, &s->v, 3 * sizeof(PetscReal)));
   *sph         = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,11 +114,7 @@ PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const P
 
   PetscFunctionBegin;
   PetscCheck(!sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "particles are added before SPHSetUp()");
-  if (total > sph->allocated) {
-    sph->allocated = PetscMax(total, sph->allocated + sph->allocated / 2);
-    PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)sph->allocated, &sph->x));
-    PetscCall(PetscRealloc(sizeof(PetscReal) * 3 * (size_t)sph->allocated, &sph->v));
-  }
+  PetscCall(SPHReserve_Internal(sph, total));
   for (PetscInt i = 0; i < 3 * n; i++) {
     sph->x[3 * old + i] = x[i];
     sph->v[3 * old + i] = v ? v[i] : 0.0;
@@ -172,28 +170,29 @@ static PetscReal ViscosityPart(int form, int kernel, PetscReal support)
 
 static PetscErrorCode AllocateState(SPH sph)
 {
-  const PetscInt n = sph->n;
-  SPHLoops      *l = &sph->loops;
-  const size_t   real = (size_t)sph->table->real_size;
+  SPHLoops    *l = &sph->loops;
+  const size_t real = (size_t)sph->table->real_size, one = sizeof(PetscReal);
+  // of the state: these change places with their copies when particles are sorted
+  PetscReal **const vectors[] = {&sph->x_alt, &sph->v_alt, &sph->v_star, &sph->accel, &sph->G_planes, &sph->G};
+  PetscReal **const scalars[] = {&sph->p, &sph->p_alt, &sph->rho, &sph->rho_pairs, &sph->open, &sph->open_surfaces, &sph->rate, &sph->wall_rate, &sph->rhs, &sph->root,
+                                 &sph->scale, &sph->y, &sph->residual, &sph->direction, &sph->Adirection, &sph->p_tilde, &sph->response, &sph->mode};
 
   PetscFunctionBegin;
-  // these change places with their copies when particles are sorted
-  PetscCall(PetscCalloc1(n, &sph->p));
-  PetscCall(PetscCalloc1(n, &sph->id));
-  PetscCall(PetscCalloc1(3 * n, &sph->x_alt));
-  PetscCall(PetscCalloc1(3 * n, &sph->v_alt));
-  PetscCall(PetscCalloc1(n, &sph->p_alt));
-  PetscCall(PetscCalloc1(n, &sph->id_alt));
-
-  PetscCall(PetscCalloc6(SPH_CHUNKS(n) * SPH_SUMS, &sph->partial, n, &sph->order, n, &sph->rho, 3 * n, &sph->v_star, 3 * n, &sph->accel, n, &sph->rho_pairs));
-  PetscCall(PetscCalloc6(n, &sph->open, n, &sph->open_surfaces, 3 * n, &sph->G_planes, 3 * n, &sph->G, n, &sph->rate, n, &sph->wall_rate));
-  PetscCall(PetscCalloc6(n, &sph->rhs, n, &sph->root, n, &sph->scale, n, &sph->y, n, &sph->residual, n, &sph->direction));
-  PetscCall(PetscCalloc4(n, &sph->Adirection, n, &sph->p_tilde, n, &sph->response, n, &sph->mode));
-  if (sph->params.viscosity > 0) PetscCall(PetscCalloc1(n, &sph->friction_planes));
+  for (size_t k = 0; k < sizeof(vectors) / sizeof(vectors[0]); k++) PetscCall(SPHAddArray_Internal(sph, vectors[k], 3 * one));
+  for (size_t k = 0; k < sizeof(scalars) / sizeof(scalars[0]); k++) PetscCall(SPHAddArray_Internal(sph, scalars[k], one));
+  PetscCall(SPHAddArray_Internal(sph, &sph->id, sizeof(PetscInt)));
+  PetscCall(SPHAddArray_Internal(sph, &sph->id_alt, sizeof(PetscInt)));
+  PetscCall(SPHAddArray_Internal(sph, &sph->order, sizeof(PetscInt)));
+  if (sph->params.viscosity > 0) PetscCall(SPHAddArray_Internal(sph, &sph->friction_planes, one));
 
   // the neighbour list is allocated when it is first built
-  PetscCall(PetscMalloc3(n, &l->cell, n, &l->start, n, &l->count));
-  PetscCall(PetscMalloc4(real * 3 * n, (char **)&l->near_x, real * n, (char **)&l->pressure, real * 4 * n, (char **)&l->vector, real * 4 * n, (char **)&l->wall));
+  PetscCall(SPHAddArray_Internal(sph, &l->cell, sizeof(int)));
+  PetscCall(SPHAddArray_Internal(sph, &l->start, sizeof(int)));
+  PetscCall(SPHAddArray_Internal(sph, &l->count, sizeof(int)));
+  PetscCall(SPHAddArray_Internal(sph, &l->near_x, 3 * real));
+  PetscCall(SPHAddArray_Internal(sph, &l->pressure, real));
+  PetscCall(SPHAddArray_Internal(sph, &l->vector, 4 * real));
+  PetscCall(SPHAddArray_Internal(sph, &l->wall, 4 * real));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -283,22 +282,8 @@ PetscErrorCode SPHDestroy(SPH *sph)
     *sph = NULL;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(SPHFreeArrays_Internal(s));
   if (s->method && s->method->Destroy) PetscCall(s->method->Destroy(s));
-  PetscCall(PetscFree(s->x));
-  PetscCall(PetscFree(s->v));
-  PetscCall(PetscFree(s->p));
-  PetscCall(PetscFree(s->id));
-  PetscCall(PetscFree(s->x_alt));
-  PetscCall(PetscFree(s->v_alt));
-  PetscCall(PetscFree(s->p_alt));
-  PetscCall(PetscFree(s->id_alt));
-  PetscCall(PetscFree6(s->partial, s->order, s->rho, s->v_star, s->accel, s->rho_pairs));
-  PetscCall(PetscFree6(s->open, s->open_surfaces, s->G_planes, s->G, s->rate, s->wall_rate));
-  PetscCall(PetscFree6(s->rhs, s->root, s->scale, s->y, s->residual, s->direction));
-  PetscCall(PetscFree4(s->Adirection, s->p_tilde, s->response, s->mode));
-  PetscCall(PetscFree(s->friction_planes));
-  PetscCall(PetscFree3(s->loops.cell, s->loops.start, s->loops.count));
-  PetscCall(PetscFree4(s->loops.near_x, s->loops.pressure, s->loops.vector, s->loops.wall));
   PetscCall(PetscFree(s->loops.grid.start));
   free(s->loops.neighbour);
   free(s->loops.gradient);

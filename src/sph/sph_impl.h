@@ -38,7 +38,7 @@ typedef struct {
   PetscReal   tolerance;                                               /* what sph.tolerance 0 means; never 0                                      */
   PetscBool   relaxes;                                                 /* sph.relax_time 0 means 0.5 h/speed; else all at once                     */
   PetscBool   responds;                                                /* Solve takes op->response; else the coupler's walls are predicted alone   */
-  PetscErrorCode (*SetUp)(SPH sph);                                    /* end of SPHSetUp: check parameters, allocate sph->method_data                  */
+  PetscErrorCode (*SetUp)(SPH sph);                                    /* end of SPHSetUp: check parameters, allocate sph->method_data; arrays of particles by SPHAddArray_Internal() */
   PetscErrorCode (*Destroy)(SPH sph);                                  /* free sph->method_data                                                         */
   PetscErrorCode (*LimitStep)(SPH sph, PetscReal *dt);                 /* lower the adaptive step [s]                                              */
   PetscErrorCode (*Predict)(SPH sph, PetscReal dt);                    /* add to v* forces of its own, before rate = D v*; rho is current          */
@@ -48,6 +48,13 @@ typedef struct {
 } SPHSolverOps;
 
 extern const SPHSolverOps SPHSolverIISPH, SPHSolverIISPHJacobi, SPHSolverISPH, SPHSolverDFSPH, SPHSolverPCISPH, SPHSolverPBF, SPHSolverWCSPH;
+
+/* an array with a place for each particle (sph_arrays.c) */
+#define SPH_ARRAYS_MAX 96
+typedef struct {
+  void **array; /* where the fluid keeps the pointer */
+  size_t bytes; /* of one particle                   */
+} SPHArray;
 
 struct _p_SPH {
   PETSCHEADER(int);
@@ -71,7 +78,9 @@ struct _p_SPH {
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
-  PetscInt   n, allocated;
+  PetscInt   n, capacity;            /* particles, and how many the arrays have room for */
+  PetscInt   n_arrays;
+  SPHArray   array[SPH_ARRAYS_MAX];
   PetscReal *x, *v, *p, *rho;        /* n x 3 [m], n x 3 [m/s], n [Pa], n [kg/m^3]       */
   PetscInt  *id;
 
@@ -90,7 +99,7 @@ struct _p_SPH {
   PetscReal *rhs, *root, *scale, *y, *residual, *direction, *Adirection, *p_tilde, *response;
   PetscReal *mode;                   /* where the power iteration for the norm starts    */
   PetscReal  norm;                   /* largest eigenvalue of S D D^T S [1]              */
-  PetscReal *partial;                /* SPH_CHUNKS(n) x SPH_SUMS                         */
+  PetscReal *partial;                /* SPH_CHUNKS(capacity) x SPH_SUMS                  */
 
   /* second copies for sorting */
   PetscReal *x_alt, *v_alt, *p_alt;
@@ -98,7 +107,7 @@ struct _p_SPH {
 
   SPHLoops            loops;
   const SPHLoopTable *table;
-  PetscInt            grid_allocated;
+  PetscInt            grid_allocated, list_chunks; /* cells; chunks of particles that the neighbour list has room for */
   PetscReal           grid_drift;    /* how far particles may have moved since they were sorted [m] */
 
   PetscInt        n_surfaces, surfaces_allocated;
@@ -117,6 +126,11 @@ struct _p_SPH {
 };
 
 extern PetscLogEvent SPH_Neighbors, SPH_Contacts, SPH_Predict, SPH_Pressure, SPH_Apply, SPH_Forces, SPH_Advance;
+
+/* sph_arrays.c: arrays with `bytes` for each particle; field is the address of the pointer */
+PETSC_INTERN PetscErrorCode SPHAddArray_Internal(SPH sph, void *field, size_t bytes);
+PETSC_INTERN PetscErrorCode SPHReserve_Internal(SPH sph, PetscInt n);
+PETSC_INTERN PetscErrorCode SPHFreeArrays_Internal(SPH sph);
 
 /* sph_sums.c: sums over fixed chunks, in order; `partial` is filled by chunk */
 PETSC_INTERN void SPHSumPartials(SPH sph, int n_sums, PetscReal sums[]);

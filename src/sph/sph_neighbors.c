@@ -155,13 +155,15 @@ static void Permute(SPH sph)
 static PetscErrorCode AllocateList(SPH sph, int capacity)
 {
   SPHLoops    *l     = &sph->loops;
-  const size_t slots = (size_t)((l->n + SPH_PAIR_CHUNK - 1) / SPH_PAIR_CHUNK) * SPH_PAIR_CHUNK * (size_t)capacity;
+  const int    chunks = (int)((sph->capacity + SPH_PAIR_CHUNK - 1) / SPH_PAIR_CHUNK);
+  const size_t slots  = (size_t)chunks * SPH_PAIR_CHUNK * (size_t)capacity;
 
   PetscFunctionBegin;
   PetscCheck(slots < 2147483647, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%zu neighbours do not fit 32-bit indices", slots);
   free(l->neighbour);
   free(l->gradient);
-  l->capacity  = capacity;
+  l->capacity      = capacity;
+  sph->list_chunks = chunks;
   l->neighbour = malloc(sizeof(int) * slots);
   l->gradient  = malloc((size_t)sph->table->real_size * (3 * slots + 4));
   PetscCheck(l->neighbour && l->gradient, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %zu neighbours", slots);
@@ -196,7 +198,7 @@ PetscErrorCode SPHUpdateNeighbors(SPH sph)
     // a full neighbourhood and a half, and the slack of the search
     const PetscReal q = sph->params.support;
     PetscCall(AllocateList(sph, (int)(1.4 * 4.0 / 3.0 * PETSC_PI * q * q * q) + 4));
-  }
+  } else if (l->n > sph->list_chunks * SPH_PAIR_CHUNK) PetscCall(AllocateList(sph, l->capacity));
   while ((status = sph->table->Pairs(l, sph->rho_pairs))) {
     PetscCheck(status == 1, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the candidates of a neighbour search");
     PetscCall(AllocateList(sph, l->capacity + l->capacity / 2));
