@@ -461,10 +461,11 @@ static PetscErrorCode CheckClashes(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* options that are PETSc's own, and the views of the blocks */
+/* options that are PETSc's own, and the views and solvers of the blocks */
 static PetscBool IsForeign(Scene scene, const char name[])
 {
-  static const char *const prefixes[] = {"ksp_", "pc_", "snes_", "mat_", "vec_", "log_", "options_", "malloc_", NULL};
+  static const char *const prefixes[]  = {"ksp_", "pc_", "snes_", "mat_", "vec_", "log_", "options_", "malloc_", NULL};
+  static const char *const of_blocks[] = {"ksp_", "pc_", "tao_", "implicit_", NULL}; // solvers that a block makes
 
   if (!strcmp(name, "info") || !strcmp(name, "help") || !strcmp(name, "malloc")) return PETSC_TRUE;
   for (PetscInt i = 0; prefixes[i]; i++) {
@@ -472,7 +473,11 @@ static PetscBool IsForeign(Scene scene, const char name[])
   }
   for (PetscInt b = 1; b < scene->n_blocks; b++) {
     const size_t n = strlen(scene->blocks[b].prefix);
-    if (scene->blocks[b].node && !strncmp(name, scene->blocks[b].prefix, n) && !strcmp(name + n, "view")) return PETSC_TRUE;
+    if (!scene->blocks[b].node || strncmp(name, scene->blocks[b].prefix, n)) continue;
+    if (!strcmp(name + n, "view")) return PETSC_TRUE;
+    for (PetscInt i = 0; of_blocks[i]; i++) {
+      if (!strncmp(name + n, of_blocks[i], strlen(of_blocks[i]))) return PETSC_TRUE;
+    }
   }
   return PETSC_FALSE;
 }

@@ -1,14 +1,18 @@
 /* sph_iisph.c - implicit incompressible SPH [Ihmsen et al., IEEE TVCG 20 (2014), doi:10.1109/TVCG.2013.105] on the system of sph_pressure.c:
    by projected conjugate gradients (sph_mprgp.c; Dostal, Optimal Quadratic Programming Algorithms (2009) ch. 5), by plain ones where
-   pressure may have either sign (sph_closed.c), or by the paper's relaxed Jacobi. */
+   pressure may have either sign (sph_closed.c), by any KSP of PETSc (sph_ksp.c), or by the paper's relaxed Jacobi. */
 #include "sph_impl.h"
 
 static PetscErrorCode SolveGradients(SPH sph, const SPHOperator *op)
 {
+  PetscBool by_ksp;
+
   PetscFunctionBegin;
   SPHPrepare_Internal(sph, op->dt, 1.0);
   PetscCall(SPHFindNorm_Internal(sph, op));
-  if (sph->params.free_surface) PetscCall(SPHSolveMPRGP_Internal(sph, op));
+  PetscCall(SPHWantsKSP_Internal(sph, &by_ksp));
+  if (by_ksp) PetscCall(SPHSolveKSP_Internal(sph, op));
+  else if (sph->params.free_surface) PetscCall(SPHSolveMPRGP_Internal(sph, op));
   else PetscCall(SPHSolveCG_Internal(sph, op));
   SPHStorePressure_Internal(sph);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -69,5 +73,5 @@ PetscErrorCode SPHPackSolve_Internal(SPH sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const SPHSolverOps SPHSolverIISPH       = {.name = "iisph", .tolerance = 1e-5, .relaxes = PETSC_TRUE, .responds = PETSC_TRUE, .Solve = SolveGradients};
+const SPHSolverOps SPHSolverIISPH       = {.name = "iisph", .tolerance = 1e-5, .relaxes = PETSC_TRUE, .responds = PETSC_TRUE, .Destroy = SPHDestroyKSP_Internal, .Solve = SolveGradients};
 const SPHSolverOps SPHSolverIISPHJacobi = {.name = "iisph_jacobi", .tolerance = 1e-3, .responds = PETSC_TRUE, .Solve = SolveJacobi};

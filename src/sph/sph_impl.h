@@ -169,6 +169,10 @@ PETSC_INTERN PetscErrorCode SPHCheckPressure_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op);
+/* sph_ksp.c: whether the options choose a KSP or TAO for the system, the solve, and what it keeps in method_data */
+PETSC_INTERN PetscErrorCode SPHWantsKSP_Internal(SPH sph, PetscBool *wanted);
+PETSC_INTERN PetscErrorCode SPHSolveKSP_Internal(SPH sph, const SPHOperator *op);
+PETSC_INTERN PetscErrorCode SPHDestroyKSP_Internal(SPH sph);
 /* solve for the density alone, dt = 1, starting from nothing, with the walls at rest */
 PETSC_INTERN PetscErrorCode SPHPackSolve_Internal(SPH sph);
 

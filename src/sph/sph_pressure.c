@@ -122,6 +122,7 @@ const SPHSolverOps *SPHFindSolver_Internal(const SPHParams *params)
 
   Options Database Keys:
 + -sph_solver (auto|iisph|...) - see SPHSolver
+. -sph_ksp_type <type>       - iisph by a KSP of PETSc (sph_ksp.c)
 . -sph_tolerance <0>         - iisph: mean |projected residual| / rho0 over particles with pressure; iisph_jacobi: mean compression
 - -sph_max_iterations <200>  - operator applications; reaching them is told by SPHStats.converged
 
