@@ -16,9 +16,11 @@ typedef enum { COUPLER_SCHEME_AUTO, COUPLER_SCHEME_EXPLICIT, COUPLER_SCHEME_MASS
 typedef enum {
   PROBE_DISPLACEMENT, /* of a body's material point [m], 3 columns                     */
   PROBE_VELOCITY,     /* of a body's point, or of the water at a place [m/s]           */
-  PROBE_PRESSURE,     /* of the water, Shepard-normalised [Pa]                         */
-  PROBE_HEIGHT,       /* of the water above the floor [m]                              */
-  PROBE_FORCE         /* of the fluid on a body, an obstacle or a wall [N]             */
+  PROBE_PRESSURE,     /* of the water, Shepard-normalised; on a body, obstacle or wall: mean over a patch [Pa] */
+  PROBE_HEIGHT,       /* of the water above the floor: volume of a column over its area [m] */
+  PROBE_FORCE,        /* of the fluid on a body, an obstacle or a wall [N]             */
+  PROBE_SURFACE,      /* height of the free surface, without splashes [m]              */
+  PROBE_FLOW_RATE     /* of the water through a rectangle [m^3/s]                      */
 } ProbeQuantity;
 
 typedef struct {
@@ -66,7 +68,10 @@ typedef struct {
 typedef struct {
   char      body[PETSC_MAX_PATH_LEN]; /* body, obstacle, or wall (xmin ... zmax); empty: the water */
   PetscReal at[3];
-  int       quantity; /* ProbeQuantity */
+  PetscReal to[3];         /* end of a line, or the far corner of a rectangle, that begins at `at`     */
+  Reals     samples;       /* n of a line, n x m of a rectangle; empty: a point                        */
+  PetscReal min[3], max[3]; /* box of a patch, or rectangle of a flow rate                             */
+  int       quantity;      /* ProbeQuantity                                                            */
 } ProbeParams;
 
 typedef enum { VERIFY_STATIC, VERIFY_DYNAMIC, VERIFY_BOTH, VERIFY_IMPLICIT, VERIFY_NONE } VerifyKind;

@@ -53,6 +53,9 @@ typedef struct {
   PetscInt    n_nodes; /* of the element that holds the point, 4 or 10 */
   PetscInt    node[10];
   PetscReal   weight[10];
+  PetscInt    patch;    /* of SPHAddPatch(): pressure on a wall                                      */
+  PetscInt    n_points; /* of a line or rectangle, which has a file of its own; 0: columns in probes.csv */
+  PetscInt    n_across; /* points along the second side of a rectangle; 1 on a line                  */
 } CouplerProbe;
 
 typedef enum { PHASE_NEIGHBOURS, PHASE_PRESSURE, PHASE_PROXIES, PHASE_TRANSFER, PHASE_SOLID, PHASE_OUTPUT, N_PHASES } CouplerPhase;
@@ -98,6 +101,10 @@ PETSC_INTERN PetscErrorCode CouplerPushOut(Coupler coupler, PetscInt *n_moved);
 PETSC_INTERN PetscErrorCode CouplerAddProbes(Coupler coupler, const Names *names);
 PETSC_INTERN PetscErrorCode CouplerProbeHeaders(Coupler coupler, PetscInt *n, char headers[][2 * BY_NAME_MAX]);
 PETSC_INTERN PetscErrorCode CouplerProbeRow(Coupler coupler, PetscReal row[]);
+PETSC_INTERN PetscErrorCode CouplerProbeSamples(CouplerProbe *probe);
+/* file of a line's or a rectangle's values: a row a point, the time first */
+PETSC_INTERN PetscErrorCode CouplerProfileCreate(const CouplerProbe *probe, const char directory[], PetscBool append, PetscReal time, Table *table);
+PETSC_INTERN PetscErrorCode CouplerProfileWrite(Coupler coupler, const CouplerProbe *probe, Table table);
 /* coupler_state.c */
 PETSC_INTERN PetscErrorCode CouplerSave(Coupler coupler, const char directory[], const char scene[]);
 PETSC_INTERN PetscErrorCode CouplerLoad(Coupler coupler, const char directory[]);

@@ -11,7 +11,7 @@ static const char *const shape_names[]  = {"box", "sphere", "cylinder", NULL};
 static const char *const field_names[]  = {"uniform", "taylor_green", "rotation", "shear", "strain", NULL};
 static const char *const scheme_names[] = {"auto", "explicit", "mass", NULL};
 static const char *const kinds[]        = {"static", "dynamic", "both", "implicit", "none", NULL};
-static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", NULL};
+static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", "surface", "flow_rate", NULL};
 
 // clang-format off
 const Key RunKeys[] = {
@@ -71,7 +71,12 @@ const Key CouplerKeys[] = {
 const Key ProbeKeys[] = {
   {"body",     KEY_STRING, ROW(ProbeParams, body),     "",  "", 0, 0, 0, NULL, "body, obstacle or wall (xmin ... zmax) it belongs to; none = the water"},
   {"at",       KEY_VEC3,   ROW(ProbeParams, at),       "m", "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "place; on a body: place in the undeformed body"},
-  {"quantity", KEY_CHOICE, ROW(ProbeParams, quantity), "",  "displacement", 0, 0, KEY_REQUIRED, quantities, "what is measured"},
+  {"to",       KEY_VEC3,   ROW(ProbeParams, to),       "m", "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "far end of a line, or opposite corner of a rectangle, from `at`: velocity or pressure of the water there, in a file <probe>.csv"},
+  {"samples",  KEY_REALS,  ROW(ProbeParams, samples),  "1", "", 2, 1e6, 0, NULL, "how many points: n on the line, [n, m] on the rectangle, ends included"},
+  {"min",      KEY_VEC3,   ROW(ProbeParams, min),      "m", "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "corner of the box that cuts the patch out of the body or wall; of the rectangle of a flow rate"},
+  {"max",      KEY_VEC3,   ROW(ProbeParams, max),      "m", "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "opposite corner"},
+  {"quantity", KEY_CHOICE, ROW(ProbeParams, quantity), "",  "displacement", 0, 0, KEY_REQUIRED, quantities,
+   "what is measured: pressure on a body, obstacle or wall is the force on a patch over its area; height is the volume of a column over its area, surface where the density falls below half; flow_rate is positive along the axis"},
   KEY_END};
 
 const Key VerifyKeys[] = {

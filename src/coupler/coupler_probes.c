@@ -1,4 +1,7 @@
-/* coupler_probes.c - gauges: points of bodies, pressure and velocity of the water, its height, force on bodies, obstacles and walls. */
+/* coupler_probes.c - gauges: points of bodies, pressure and velocity of the water, its height and flow, force and pressure on bodies, obstacles
+   and walls. */
+#include <math.h>
+
 #include "coupler_impl.h"
 #include "tled/tled_t10.h"
 
@@ -102,6 +105,81 @@ static PetscErrorCode FindSurface(Coupler c, const char name[], PetscInt *surfac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* whether the scene names <probe>.<key> */
+static PetscBool IsNamed(const CouplerProbe *probe, const char key[])
+{
+  char      option[2 * BY_NAME_MAX];
+  PetscBool named = PETSC_FALSE;
+
+  (void)PetscSNPrintf(option, sizeof(option), "-%s_%s", probe->name, key);
+  (void)PetscOptionsHasName(NULL, NULL, option, &named);
+  return named;
+}
+
+/* the rectangle of a flow rate: flat along one axis */
+static PetscErrorCode CheckRectangle(const CouplerProbe *probe, const char key[])
+{
+  const ProbeParams *p      = &probe->params;
+  PetscInt           n_flat = 0;
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    n_flat += p->min[k] == p->max[k];
+    if (p->min[k] > p->max[k]) PetscFunctionReturn(InputError(key, "is below `min` along %c", "xyz"[k]));
+  }
+  if (n_flat != 1) PetscFunctionReturn(InputError(key, "must agree with `min` along one axis, the normal of the rectangle, and be above it along the others"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* the box of a pressure on a wall, obstacle or body */
+static PetscErrorCode CheckPatch(Coupler c, CouplerProbe *probe, const char key[])
+{
+  const ProbeParams *p = &probe->params;
+  PetscReal          area, min[3], max[3];
+  unsigned           walls, periodic;
+  const PetscInt     wall = -1 - probe->surface;
+  char               body[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++)
+    if (p->min[k] > p->max[k]) PetscFunctionReturn(InputError(key, "is below `min` along %c", "xyz"[k]));
+  if (probe->surface >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SPHGetDomain(c->sph, min, max, &walls, &periodic));
+  PetscCall(PetscSNPrintf(body, sizeof(body), "%s.body", probe->name));
+  if (!(walls >> wall & 1)) PetscFunctionReturn(InputError(body, "is an open side of the domain: pressure acts on walls\nadd it to domain.walls"));
+  PetscCall(SPHAddPatch(c->sph, wall, p->min, p->max, &probe->patch));
+  PetscCall(SPHGetPatch(c->sph, probe->patch, NULL, &area));
+  if (!(area > 0)) PetscFunctionReturn(InputError(key, "makes a patch without area on the wall %s: it must be above `min` along the wall and overlap the domain", p->body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* `min` and `max`: needed by a flow rate and by a pressure on a surface, by nothing else */
+static PetscErrorCode CheckBox(Coupler c, CouplerProbe *probe)
+{
+  const ProbeParams *p       = &probe->params;
+  const PetscBool    patch   = (PetscBool)(p->quantity == PROBE_PRESSURE && probe->surface != WATER);
+  const PetscBool    needed  = (PetscBool)(patch || p->quantity == PROBE_FLOW_RATE);
+  const char *const  words[] = {"min", "max"};
+  char               key[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 2; k++) {
+    PetscCall(PetscSNPrintf(key, sizeof(key), "%s.%s", probe->name, words[k]));
+    if (IsNamed(probe, words[k]) == needed) continue;
+    if (!needed) PetscFunctionReturn(InputError(key, "belongs to `flow_rate`, and to `pressure` on a body, obstacle or wall"));
+    PetscFunctionReturn(InputError(key, "is missing\n%s", patch ? "the pressure on a surface is averaged over the part of it in the box `min` to `max`, a spacing or more wide"
+                                                                  : "the flow is counted through the rectangle `min` to `max`, flat along its normal"));
+  }
+  if (patch) ByCall(CheckPatch(c, probe, key));
+  if (p->quantity == PROBE_FLOW_RATE) ByCall(CheckRectangle(probe, key));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool IsOfWater(int quantity)
+{
+  return (PetscBool)(quantity == PROBE_HEIGHT || quantity == PROBE_SURFACE || quantity == PROBE_FLOW_RATE);
+}
+
 static PetscErrorCode AddProbe(Coupler c, const char name[])
 {
   CouplerProbe *probe = &c->probe[c->n_probes];
@@ -125,14 +203,14 @@ static PetscErrorCode AddProbe(Coupler c, const char name[])
   }
   if (p->quantity == PROBE_FORCE && probe->surface == WATER) PetscFunctionReturn(InputError(key, "must name what the force acts on: a body, an obstacle or a wall"));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.quantity", name));
-  if (!c->sph && (p->quantity == PROBE_PRESSURE || p->quantity == PROBE_HEIGHT || p->quantity == PROBE_FORCE || (p->quantity == PROBE_VELOCITY && !is_body))) {
+  if (!c->sph && (IsOfWater(p->quantity) || p->quantity == PROBE_PRESSURE || p->quantity == PROBE_FORCE || (p->quantity == PROBE_VELOCITY && !is_body))) {
     PetscFunctionReturn(InputError(key, "needs a fluid, and the scene has none"));
   }
-  if ((p->quantity == PROBE_PRESSURE || p->quantity == PROBE_HEIGHT) && p->body[0]) {
-    PetscFunctionReturn(InputError(key, "is a quantity of the water at a place; leave out `body`"));
-  }
+  if (IsOfWater(p->quantity) && p->body[0]) PetscFunctionReturn(InputError(key, "is a quantity of the water at a place; leave out `body`"));
+  ByCall(CheckBox(c, probe));
+  ByCall(CouplerProbeSamples(probe));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.at", name));
-  if (is_body && p->quantity != PROBE_FORCE) ByCall(LocatePoint(&c->surface[probe->surface], key, p->at, probe));
+  if (is_body && (p->quantity == PROBE_DISPLACEMENT || p->quantity == PROBE_VELOCITY)) ByCall(LocatePoint(&c->surface[probe->surface], key, p->at, probe));
   c->n_probes++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -147,15 +225,19 @@ PetscErrorCode CouplerAddProbes(Coupler c, const Names *names)
   PetscFunctionReturn(InputErrorCount() ? BY_ERR_INPUT : PETSC_SUCCESS);
 }
 
-static PetscBool IsVector(const CouplerProbe *probe)
+/* columns of a probe in probes.csv: none for a line, which has a file of its own */
+static int Columns(const CouplerProbe *probe)
 {
-  return (PetscBool)(probe->params.quantity != PROBE_PRESSURE && probe->params.quantity != PROBE_HEIGHT);
+  const int q = probe->params.quantity;
+
+  if (probe->n_points) return 0;
+  return q == PROBE_DISPLACEMENT || q == PROBE_VELOCITY || q == PROBE_FORCE ? 3 : 1;
 }
 
 /* column headers "name [unit]" or "name_x [unit]"; headers has room for 3 columns a probe and the time */
 PetscErrorCode CouplerProbeHeaders(Coupler c, PetscInt *n, char headers[][2 * BY_NAME_MAX])
 {
-  static const char *const units[] = {"m", "m/s", "Pa", "m", "N"};
+  static const char *const units[] = {"m", "m/s", "Pa", "m", "N", "m", "m^3/s"};
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(headers[0], "time [s]", 2 * BY_NAME_MAX));
@@ -164,8 +246,8 @@ PetscErrorCode CouplerProbeHeaders(Coupler c, PetscInt *n, char headers[][2 * BY
     const CouplerProbe *probe = &c->probe[k];
     const char         *unit  = units[probe->params.quantity];
 
-    for (int i = 0; i < (IsVector(probe) ? 3 : 1); i++) {
-      if (IsVector(probe)) PetscCall(PetscSNPrintf(headers[(*n)++], 2 * BY_NAME_MAX, "%s_%c [%s]", probe->name, "xyz"[i], unit));
+    for (int i = 0; i < Columns(probe); i++) {
+      if (Columns(probe) == 3) PetscCall(PetscSNPrintf(headers[(*n)++], 2 * BY_NAME_MAX, "%s_%c [%s]", probe->name, "xyz"[i], unit));
       else PetscCall(PetscSNPrintf(headers[(*n)++], 2 * BY_NAME_MAX, "%s [%s]", probe->name, unit));
     }
   }
@@ -190,6 +272,53 @@ static PetscErrorCode BodyPoint(CouplerSurface *s, const CouplerProbe *probe, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Force of the fluid's pressure on the proxies whose places on the undeformed surface lie in the box, along their normals, over their area:
+   a proxy stands for its own part of the surface. nan when no proxy is in the box. */
+static PetscErrorCode ProxyPatch(Coupler c, const CouplerProbe *probe, PetscReal *pressure)
+{
+  CouplerSurface    *s = &c->surface[probe->surface];
+  const ProbeParams *p = &probe->params;
+  const PetscReal   *X = NULL, *x, *normal, *kappa, *area, *weights;
+  const PetscInt    *nodes;
+  PetscReal          force = 0.0, total = 0.0;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  *pressure = NAN;
+  if (!s->proxy) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->tled) PetscCall(TLEDGetMesh(s->tled, NULL, NULL, &X));
+  else PetscCall(ProxyGetSampling(s->proxy, &X)); // an obstacle is rigid: it was sampled where the scene puts it
+  PetscCall(ProxyGetPoints(s->proxy, &n, &x, &normal, &kappa, &area));
+  PetscCall(ProxyGetInterpolation(s->proxy, &n, &nodes, &weights));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscBool inside = PETSC_TRUE;
+
+    for (int k = 0; k < 3; k++) {
+      PetscReal at = 0.0;
+      for (int a = 0; a < 3; a++) at += weights[3 * b + a] * X[3 * nodes[3 * b + a] + k];
+      if (at < p->min[k] || at > p->max[k]) inside = PETSC_FALSE;
+    }
+    if (!inside) continue;
+    total += area[b];
+    for (int k = 0; k < 3 && c->step > 0; k++) force -= s->proxy_force[3 * b + k] * normal[3 * b + k];
+  }
+  if (total > 0) *pressure = force / total;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PatchPressure(Coupler c, const CouplerProbe *probe, PetscReal *pressure)
+{
+  PetscReal force, area;
+
+  PetscFunctionBegin;
+  if (probe->surface >= 0) PetscCall(ProxyPatch(c, probe, pressure));
+  else {
+    PetscCall(SPHGetPatch(c->sph, probe->patch, &force, &area));
+    *pressure = force / area;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal value[3])
 {
   PetscReal pressure, velocity[3], walls[18];
@@ -207,8 +336,16 @@ static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal
   case PROBE_HEIGHT:
     PetscCall(SPHGetHeight(c->sph, probe->params.at, value));
     break;
+  case PROBE_SURFACE:
+    PetscCall(SPHGetSurface(c->sph, probe->params.at, value));
+    break;
+  case PROBE_FLOW_RATE:
+    for (PetscInt k = 0; k < 3; k++)
+      if (probe->params.min[k] == probe->params.max[k]) PetscCall(SPHGetFlowRate(c->sph, k, probe->params.min, probe->params.max, value));
+    break;
   case PROBE_PRESSURE:
-    PetscCall(SPHInterpolate(c->sph, probe->params.at, value, velocity, &wet));
+    if (probe->surface != WATER) PetscCall(PatchPressure(c, probe, value));
+    else PetscCall(SPHInterpolate(c->sph, probe->params.at, value, velocity, &wet));
     break;
   default:
     if (probe->surface >= 0) PetscCall(BodyPoint(&c->surface[probe->surface], probe, value));
@@ -226,8 +363,9 @@ PetscErrorCode CouplerProbeRow(Coupler c, PetscReal row[])
   for (PetscInt k = 0; k < c->n_probes; k++) {
     PetscReal value[3] = {0, 0, 0};
 
+    if (!Columns(&c->probe[k])) continue;
     PetscCall(ProbeValue(c, &c->probe[k], value));
-    for (int i = 0; i < (IsVector(&c->probe[k]) ? 3 : 1); i++) row[n++] = value[i];
+    for (int i = 0; i < Columns(&c->probe[k]); i++) row[n++] = value[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

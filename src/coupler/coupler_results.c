@@ -29,7 +29,9 @@ PetscErrorCode CouplerResultsCreate(Coupler c, const char directory[], const cha
   if (c->n_probes) {
     PetscCall(CouplerProbeHeaders(c, &n, headers));
     for (PetscInt k = 0; k < n; k++) pointers[k] = headers[k];
-    ByCall(TableCreate(directory, "probes.csv", n, pointers, append, c->time, &r->probes));
+    if (n > 1) ByCall(TableCreate(directory, "probes.csv", n, pointers, append, c->time, &r->probes));
+    for (PetscInt k = 0; k < c->n_probes; k++)
+      if (c->probe[k].n_points) ByCall(CouplerProfileCreate(&c->probe[k], directory, append, c->time, &r->profile[k]));
   }
   if (c->sph) ByCall(SeriesCreate(directory, "fluid", SERIES_POINTS, scene, append, c->time, &r->fluid));
   for (PetscInt k = 0; k < c->n_surfaces; k++) {
@@ -107,6 +109,8 @@ static PetscErrorCode WriteBody(Coupler c, CouplerResults *r, PetscInt k)
 static PetscErrorCode WriteFields(Coupler c, CouplerResults *r)
 {
   PetscFunctionBegin;
+  for (PetscInt k = 0; k < c->n_probes; k++)
+    if (r->profile[k]) ByCall(CouplerProfileWrite(c, &c->probe[k], r->profile[k]));
   if (r->fluid) {
     PetscInt         n;
     const PetscReal *x, *v, *p, *rho;
@@ -246,6 +250,7 @@ PetscErrorCode CouplerResultsDestroy(CouplerResults *r)
   PetscFunctionBegin;
   PetscCall(TableDestroy(&r->ledger));
   PetscCall(TableDestroy(&r->probes));
+  for (PetscInt k = 0; k < BY_NAMES_MAX; k++) PetscCall(TableDestroy(&r->profile[k]));
   PetscCall(SeriesDestroy(&r->fluid));
   for (PetscInt k = 0; k < COUPLER_MAX_SURFACES; k++) {
     PetscCall(SeriesDestroy(&r->body[k]));

@@ -6,7 +6,7 @@
 
 typedef struct {
   char      directory[PETSC_MAX_PATH_LEN];
-  Table     ledger, probes;
+  Table     ledger, probes, profile[BY_NAMES_MAX]; /* one file for each probe on a line or rectangle */
   Series    fluid, body[COUPLER_MAX_SURFACES], proxies[COUPLER_MAX_SURFACES];
   PetscInt  n_series, n_rows;      /* written by this process                        */
   PetscInt  steps;                 /* taken by this process                          */

@@ -289,6 +289,7 @@ PetscErrorCode SPHDestroy(SPH *sph)
   free(s->loops.gradient);
   for (PetscInt k = 0; k < s->surfaces_allocated; k++) PetscCall(PetscFree2(s->surfaces[k].union_factor, s->surfaces[k].friction));
   PetscCall(PetscFree(s->surfaces));
+  PetscCall(PetscFree(s->patches));
   PetscCall(PetscHeaderDestroy(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -131,6 +131,13 @@ BY_EXTERN PetscErrorCode SPHSetInternals(SPH sph, const PetscReal state[SPH_INTE
 BY_EXTERN PetscErrorCode SPHInterpolate(SPH sph, const PetscReal at[3], PetscReal *pressure, PetscReal velocity[3], PetscBool *inside);
 /* height of the water [m] above the domain's floor in the column of radius h around (x, y), along -gravity */
 BY_EXTERN PetscErrorCode SPHGetHeight(SPH sph, const PetscReal at[3], PetscReal *height);
+/* height of the free surface [m] above the domain's floor, found upwards from `at`: where the fluid's density falls below half; splashes do not count */
+BY_EXTERN PetscErrorCode SPHGetSurface(SPH sph, const PetscReal at[3], PetscReal *height);
+/* force [N] along the outward normal on a rectangle of a planar wall, watched from the next step on, and its area [m^2] */
+BY_EXTERN PetscErrorCode SPHAddPatch(SPH sph, PetscInt wall, const PetscReal min[3], const PetscReal max[3], PetscInt *patch);
+BY_EXTERN PetscErrorCode SPHGetPatch(SPH sph, PetscInt patch, PetscReal *force, PetscReal *area);
+/* volume [m^3/s] through a rectangle across an axis, positive along the axis */
+BY_EXTERN PetscErrorCode SPHGetFlowRate(SPH sph, PetscInt axis, const PetscReal min[3], const PetscReal max[3], PetscReal *rate);
 /* force [N] of the fluid on the six planes, order xmin xmax ymin ymax zmin zmax */
 BY_EXTERN PetscErrorCode SPHGetWallForces(SPH sph, PetscReal force[18]);
 

@@ -149,6 +149,60 @@ PetscErrorCode SPHGetHeight(SPH sph, const PetscReal at[3], PetscReal *height)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static void AddPart(SPH sph, int i, const PetscReal d[3], void *ctx)
+{
+  (void)i;
+  *(PetscReal *)ctx += SPHKernelW(sph->params.kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), sph->h);
+}
+
+/* part of the kernel's volume around a place that is full: of fluid, or beyond the floor; what is beyond the other walls does not count */
+static PetscReal FullPart(SPH sph, const PetscReal at[3], int floor_plane)
+{
+  const PetscReal reach[3] = {sph->h, sph->h, sph->h};
+  PetscReal       sum = 0.0, open = 1.0, below = 0.0;
+
+  VisitBox(sph, at, reach, AddPart, &sum);
+  for (int k = 0; k < 6; k++) {
+    PetscReal sign, part;
+
+    if (!(sph->walls >> k & 1)) continue;
+    part = SPHHalfSpace(sph->params.kernel, SPHPlaneDistance(sph, k, at, &sign), sph->h);
+    if (k == floor_plane) below = part;
+    else open *= 1.0 - part;
+  }
+  return sum * sph->mass / sph->params.density / PetscMax(open, 0.05) + below;
+}
+
+/*@
+  SPHGetSurface - height of the free surface [m] above the floor of the domain: the first place, upwards from `at`, where the part of the
+  kernel's volume that is fluid falls below one half
+
+  Of a column that has splashes this is the surface of what stands on the floor; SPHGetHeight() is its whole volume over its area. A film
+  thinner than a spacing or two is found as well as the particles stand for it. 0 where `at` is dry. Above a body put `at` on its top.
+@*/
+PetscErrorCode SPHGetSurface(SPH sph, const PetscReal at[3], PetscReal *height)
+{
+  const SPHGrid  *g    = &sph->loops.grid;
+  const int       axis = VerticalAxis(sph), falls = sph->gravity[axis] > 0, floor_plane = 2 * axis + falls; // gravity along +axis: the floor is at max
+  const PetscReal up   = falls ? -1.0 : 1.0, step = 0.125 * sph->h;
+  const PetscReal floor_at = falls ? sph->max[axis] : sph->has_domain ? sph->min[axis] : g->lo[axis];
+  PetscReal       x[3] = {at[0], at[1], at[2]}, part, next;
+  const PetscInt  n    = (PetscInt)(((g->n[axis] + 2) * g->cell[axis] + PetscAbsReal(at[axis] - g->lo[axis]) + sph->h) / step);
+
+  PetscFunctionBegin;
+  PetscCheck(sph->loops.capacity > 0, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHUpdateNeighbors() comes first");
+  *height = 0.0;
+  if (up * (x[axis] - floor_at) < 0) x[axis] = floor_at;
+  part = FullPart(sph, x, floor_plane);
+  for (PetscInt k = 0; k < n && part >= 0.5 - 1e-12; k++, part = next) {
+    x[axis] += up * step;
+    next    = FullPart(sph, x, floor_plane);
+    *height = up * (x[axis] - floor_at);
+    if (next < 0.5) *height -= step * (0.5 - next) / (part - next);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SPHGetStats - energies, momenta, density errors of the current state, and the last pressure solve
 

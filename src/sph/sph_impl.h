@@ -56,6 +56,13 @@ typedef struct {
   size_t bytes; /* of one particle                   */
 } SPHArray;
 
+/* a rectangle on a planar wall whose pressure is watched (sph_patch.c) */
+typedef struct {
+  int       wall;           /* 0..5                                                       */
+  PetscReal min[3], max[3]; /* [m], within the domain                                     */
+  PetscReal area, force;    /* [m^2], [N] along the outward normal, of the last step      */
+} SPHPatch;
+
 struct _p_SPH {
   PETSCHEADER(int);
   SPHParams params;
@@ -120,6 +127,8 @@ struct _p_SPH {
   PetscReal body_force[3], control[3]; /* [m/s^2], and its integral part                 */
   PetscReal viscous_loss;            /* [J]                                              */
   PetscReal wall_force[18];          /* [N]                                              */
+  PetscInt  n_patches;
+  SPHPatch *patches;                 /* n_patches                                        */
   PetscInt  iterations;
   PetscBool converged;
   char      breakdown[512];
@@ -139,12 +148,18 @@ PETSC_INTERN void SPHSumPartials(SPH sph, int n_sums, PetscReal sums[]);
 PETSC_INTERN PetscErrorCode SPHFindPlanes_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHWallRate_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
+/* force [N] of the pressure of particle i on plane k along the plane's axis */
+PETSC_INTERN PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k);
 /* distance [m] of a position from plane k (0..5), positive inside; gradient +-1 along its axis in *sign */
 static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], PetscReal *sign)
 {
   *sign = k % 2 ? -1.0 : 1.0;
   return k % 2 ? sph->max[k / 2] - x[k / 2] : x[k / 2] - sph->min[k / 2];
 }
+
+/* sph_patch.c */
+PETSC_INTERN void SPHPatchForces_Internal(SPH sph);
+PETSC_INTERN void SPHPatchStop_Internal(SPH sph, int wall, int i, PetscReal force);
 
 /* sph_stop.c */
 PETSC_INTERN void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt);

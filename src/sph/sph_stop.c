@@ -14,6 +14,21 @@ static PetscReal Lacking(SPH sph, PetscReal gap, PetscReal speed, PetscReal dt)
   return PetscMax(0.0, least - speed);
 }
 
+/* what the stops at the planes add to the patches that are watched */
+static void StopAtPatches(SPH sph, PetscReal dt)
+{
+  for (int i = 0; i < (int)sph->n; i++) {
+    for (int k = 0; k < 6; k++) {
+      PetscReal sign, gap, lacking;
+
+      if (!(sph->walls >> k & 1)) continue;
+      gap     = SPHPlaneDistance(sph, k, sph->x + 3 * i, &sign);
+      lacking = Lacking(sph, gap, sign * sph->v[3 * i + k / 2], dt);
+      if (lacking > 0) SPHPatchStop_Internal(sph, k, i, sph->mass * lacking / dt);
+    }
+  }
+}
+
 /* stop at the planes, before x moves; the impulse goes into wall_force */
 void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt)
 {
@@ -21,6 +36,7 @@ void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt)
   PetscReal sums[6];
 
   if (!sph->walls) return;
+  if (sph->n_patches) StopAtPatches(sph, dt);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < chunks; c++) {
     PetscReal *impulse = sph->partial + c * SPH_SUMS;

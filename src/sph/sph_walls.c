@@ -230,7 +230,19 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
     SPHSumPartials(sph, 6, sums);
     for (int k = 0; k < 6; k++) sph->wall_force[6 * axis + k] = sums[k];
   }
+  if (sph->n_patches) SPHPatchForces_Internal(sph);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k)
+{
+  int       plane[6];
+  PetscReal phi[6], slope[6], d[6];
+  const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
+
+  for (int m = 0; m < touched; m++)
+    if (plane[m] == k) return sph->mass * sph->p[i] / sph->params.density * OtherPlanes(touched, phi, m) * sph->open_surfaces[i] * slope[m];
+  return 0.0;
 }
 
 /* force on proxies of one surface; one thread, because particles share proxies: the touched are few */
