@@ -13,11 +13,16 @@ import sys
 
 sys.dont_write_bytecode = True
 
+import fluid_free
+import fluid_marin
 import fluid_still
 from sections import main
 
 SECTIONS = (
     ("still", "Still water in a tank", fluid_still.still),
+    ("drop", "A stretching drop", fluid_free.drop),
+    ("column", "A collapsing column", fluid_free.column),
+    ("marin", "A dam break against a box", fluid_marin.marin),
 )
 
 HEAD = """# The fluid against what is known
