@@ -17,8 +17,8 @@ enum { NEIGHBORS, PREDICT, PRESSURE, FORCES, ADVANCE, N_PHASES };
 static const char *const PhaseNames[N_PHASES] = {"neighbours and density", "predict", "pressure", "forces and gauges", "advance"};
 
 #define N_SAMPLES 100 /* of the series, evenly in time */
-enum { TIME, FRONT, TOP, KINETIC, POTENTIAL, FAR_FORCE, COMPRESSION_MEAN, COMPRESSION_MAX, N_SERIES };
-static const char *const SeriesNames[N_SERIES] = {"time", "front", "top", "kinetic", "potential", "far_force", "compression_mean", "compression_max"};
+enum { TIME, FRONT, TOP, KINETIC, POTENTIAL, FAR_FORCE, FLOOR_FORCE, COMPRESSION_MEAN, COMPRESSION_MAX, N_SERIES }; /* the far force is a mean since the last row */
+static const char *const SeriesNames[N_SERIES] = {"time", "front", "top", "kinetic", "potential", "far_force", "floor_force", "compression_mean", "compression_max"};
 
 /* what is run */
 typedef struct {
@@ -112,7 +112,7 @@ static int Larger(const void *a, const void *b)
 /* one row of the series: the front is where all but 1/2 % of the particles are behind, the top the same upwards */
 static PetscErrorCode Sample(SPH sph, Run *run)
 {
-  PetscReal       *row = run->series[run->n_samples], *sorted;
+  PetscReal       *row = run->series[run->n_samples], *sorted, force[18];
   const PetscReal *x;
 
   PetscFunctionBegin;
@@ -124,7 +124,9 @@ static PetscErrorCode Sample(SPH sph, Run *run)
     row[FRONT + k] = sorted[run->n / 200];
   }
   PetscCall(PetscFree(sorted));
+  PetscCall(SPHGetWallForces(sph, force));
   row[TIME]             = run->time;
+  row[FLOOR_FORCE]      = -force[14];
   row[KINETIC]          = run->stats.kinetic;
   row[POTENTIAL]        = run->stats.potential;
   row[FAR_FORCE]        = run->time > run->since ? run->far_impulse / (run->time - run->since) : 0.0;

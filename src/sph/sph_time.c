@@ -175,11 +175,36 @@ static void Drift(SPH sph, PetscReal dt, PetscReal *path)
   *path = dt * sqrt(speed2);
 }
 
+/*
+  A fixed step that is too long makes water explode without a number going wrong or a wall being passed. A particle that passes its whole
+  neighbourhood in a step, twice the support, ends the run; steps that the program chooses follow the speed instead.
+*/
+static PetscErrorCode CheckPath(SPH sph, PetscReal dt, PetscReal path)
+{
+  const PetscReal limit = 2.0 * sph->h;
+  PetscReal       fastest = 0.0;
+  PetscInt        worst   = 0;
+
+  PetscFunctionBegin;
+  if (sph->params.time_step <= 0 || path <= limit) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < sph->n; i++) {
+    const PetscReal speed = Norm3(sph->v + 3 * i);
+    if (speed > fastest) {
+      fastest = speed;
+      worst   = i;
+    }
+  }
+  PetscCall(PetscSNPrintf(sph->breakdown, sizeof(sph->breakdown),
+                          "step %d, at its end: fluid particle %d at (%g, %g, %g) m goes %g m in one step of %g s, more than twice the support radius: sph.time_step is too long here, leave it out or take %.1g s",
+                          (int)sph->step, (int)sph->id[worst], (double)sph->x[3 * worst], (double)sph->x[3 * worst + 1], (double)sph->x[3 * worst + 2], (double)path, (double)dt, (double)(0.25 * dt)));
+  PetscFunctionReturn(BY_ERR_BREAKDOWN);
+}
+
 /*@
   SPHDrift - second half of the end of a step: x += dt v, periodic axes wrapped
 
   Errors:
-  BY_ERR_BREAKDOWN when a particle is not a number or left the domain through a wall
+  BY_ERR_BREAKDOWN when a particle is not a number or left the domain through a wall, or a fixed step takes one past its whole neighbourhood
 @*/
 PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
 {
@@ -198,6 +223,7 @@ PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
   sph->dt_last = dt;
   sph->step++;
   ByCall(SPHCheckState_Internal(sph, "at its end"));
+  ByCall(CheckPath(sph, dt, path));
   PetscCall(PetscLogEventEnd(SPH_Advance, sph, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
