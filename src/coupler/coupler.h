@@ -72,6 +72,7 @@ typedef struct {
   Reals     samples;       /* n of a line, n x m of a rectangle; empty: a point                        */
   PetscReal min[3], max[3]; /* box of a patch, or rectangle of a flow rate                             */
   int       quantity;      /* ProbeQuantity                                                            */
+  PetscBool mean;          /* over the time since the last row                                         */
 } ProbeParams;
 
 typedef enum { VERIFY_STATIC, VERIFY_DYNAMIC, VERIFY_BOTH, VERIFY_IMPLICIT, VERIFY_NONE } VerifyKind;

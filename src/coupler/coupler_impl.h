@@ -56,6 +56,8 @@ typedef struct {
   PetscInt    patch;    /* of SPHAddPatch(): pressure on a wall                                      */
   PetscInt    n_points; /* of a line or rectangle, which has a file of its own; 0: columns in probes.csv */
   PetscInt    n_across; /* points along the second side of a rectangle; 1 on a line                  */
+  PetscReal   sum[3];   /* of value x step since the last row, of a probe that is a mean             */
+  PetscReal   time;     /* [s] of those steps                                                        */
 } CouplerProbe;
 
 typedef enum { PHASE_NEIGHBOURS, PHASE_PRESSURE, PHASE_PROXIES, PHASE_TRANSFER, PHASE_SOLID, PHASE_OUTPUT, N_PHASES } CouplerPhase;
@@ -100,6 +102,7 @@ PETSC_INTERN PetscErrorCode CouplerPushOut(Coupler coupler, PetscInt *n_moved);
 /* coupler_probes.c */
 PETSC_INTERN PetscErrorCode CouplerAddProbes(Coupler coupler, const Names *names);
 PETSC_INTERN PetscErrorCode CouplerProbeHeaders(Coupler coupler, PetscInt *n, char headers[][2 * BY_NAME_MAX]);
+PETSC_INTERN PetscErrorCode CouplerProbeStep(Coupler coupler, PetscReal dt); /* what means over time need of a step */
 PETSC_INTERN PetscErrorCode CouplerProbeRow(Coupler coupler, PetscReal row[]);
 PETSC_INTERN PetscErrorCode CouplerProbeSamples(CouplerProbe *probe);
 /* file of a line's or a rectangle's values: a row a point, the time first */

@@ -77,6 +77,7 @@ const Key ProbeKeys[] = {
   {"max",      KEY_VEC3,   ROW(ProbeParams, max),      "m", "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "opposite corner"},
   {"quantity", KEY_CHOICE, ROW(ProbeParams, quantity), "",  "displacement", 0, 0, KEY_REQUIRED, quantities,
    "what is measured: pressure on a body, obstacle or wall is the force on a patch over its area; height is the volume of a column over its area, surface where the density falls below half; flow_rate is positive along the axis"},
+  {"mean",     KEY_BOOL,   ROW(ProbeParams, mean),     "",  "false", 0, 0, 0, NULL, "mean over all steps since the last row in place of the value of the moment: a short impact is not missed, its impulse is right"},
   KEY_END};
 
 const Key VerifyKeys[] = {

@@ -209,6 +209,8 @@ static PetscErrorCode AddProbe(Coupler c, const char name[])
   if (IsOfWater(p->quantity) && p->body[0]) PetscFunctionReturn(InputError(key, "is a quantity of the water at a place; leave out `body`"));
   ByCall(CheckBox(c, probe));
   ByCall(CouplerProbeSamples(probe));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s.mean", name));
+  if (p->mean && probe->n_points) PetscFunctionReturn(InputError(key, "belongs to a row of probes.csv; a line or rectangle is of one moment"));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.at", name));
   if (is_body && (p->quantity == PROBE_DISPLACEMENT || p->quantity == PROBE_VELOCITY)) ByCall(LocatePoint(&c->surface[probe->surface], key, p->at, probe));
   c->n_probes++;
@@ -354,6 +356,22 @@ static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CouplerProbeStep(Coupler c, PetscReal dt)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < c->n_probes; k++) {
+    CouplerProbe *probe    = &c->probe[k];
+    PetscReal     value[3] = {0, 0, 0};
+
+    if (!probe->params.mean) continue;
+    PetscCall(ProbeValue(c, probe, value));
+    for (int i = 0; i < 3; i++) probe->sum[i] += value[i] * dt;
+    probe->time += dt;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* values of the moment, or means since the last row, which begin anew */
 PetscErrorCode CouplerProbeRow(Coupler c, PetscReal row[])
 {
   PetscInt n = 0;
@@ -361,11 +379,16 @@ PetscErrorCode CouplerProbeRow(Coupler c, PetscReal row[])
   PetscFunctionBegin;
   row[n++] = c->time;
   for (PetscInt k = 0; k < c->n_probes; k++) {
-    PetscReal value[3] = {0, 0, 0};
+    CouplerProbe *probe    = &c->probe[k];
+    PetscReal     value[3] = {0, 0, 0};
 
-    if (!Columns(&c->probe[k])) continue;
-    PetscCall(ProbeValue(c, &c->probe[k], value));
-    for (int i = 0; i < Columns(&c->probe[k]); i++) row[n++] = value[i];
+    if (!Columns(probe)) continue;
+    if (probe->time > 0) {
+      for (int i = 0; i < 3; i++) value[i] = probe->sum[i] / probe->time;
+    } else PetscCall(ProbeValue(c, probe, value));
+    for (int i = 0; i < Columns(probe); i++) row[n++] = value[i];
+    probe->time = 0.0;
+    PetscCall(PetscArrayzero(probe->sum, 3));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,6 +68,7 @@ static PetscErrorCode Advance(Run *run)
   PetscFunctionBegin;
   ByCall(CouplerStep(c, next - c->time, &dt));
   run->results.steps++;
+  PetscCall(CouplerProbeStep(c, dt));
   if (next - c->time > 1e-9 * run->params.output_every) PetscFunctionReturn(PETSC_SUCCESS);
   c->time = next;
   ByCall(CouplerResultsWrite(c, &run->results, (PetscBool)(run->n_outputs % run->fields_stride == 0 || c->time >= run->params.end * (1.0 - 1e-9))));
