@@ -39,6 +39,20 @@ BY_HD double Invert3(const double A[9], double B[9])
   return det;
 }
 
+/* smallest eigenvalue of the symmetric matrix A = xx xy xz yy yz zz, by the cosine formula of the cubic [Smith 1961] */
+BY_HD double LeastEigenvalue3(const double A[6])
+{
+  const double mean = (A[0] + A[3] + A[5]) / 3.0, a = A[0] - mean, b = A[3] - mean, c = A[5] - mean;
+  const double off = A[1]*A[1] + A[2]*A[2] + A[4]*A[4], size = sqrt((a*a + b*b + c*c + 2.0*off) / 6.0);
+  const double det = a*(b*c - A[4]*A[4]) - A[1]*(A[1]*c - A[4]*A[2]) + A[2]*(A[1]*A[4] - b*A[2]);
+  double       r;
+
+  if (size <= 0.0) return mean;
+  r = det / (2.0*size*size*size);
+  r = r < -1.0 ? -1.0 : r > 1.0 ? 1.0 : r;
+  return mean + 2.0*size*cos(acos(r)/3.0 + 2.0943951023931953); // 2 pi/3 further: the least of the three
+}
+
 /* y = A x */
 BY_HD void Mul3(const double A[9], const double x[3], double y[3])
 {

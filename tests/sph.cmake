@@ -8,6 +8,7 @@ byssus_test(unit/sph/test_contacts base sph)
 byssus_test(unit/sph/test_threads base sph)
 byssus_test(unit/sph/test_viscosity base sph)
 byssus_test(unit/sph/test_gauge base sph)
+byssus_test(unit/sph/test_closed base sph)
 byssus_test(unit/sph/test_field base sph)
 
 # the device's loops against the CPU's; 77 = no device here

@@ -233,6 +233,8 @@ PetscErrorCode SPHSetUp(SPH sph)
     const PetscReal speed = PetscMax(sqrt(g * sph->h), Norm3(par->mean_velocity));
     sph->relax_time       = speed > 0 ? 0.5 * sph->h / speed : -1.0;
   }
+  sph->wall_flux   = 1.0;
+  sph->shifting    = PetscMax(0.0, par->shifting);
   sph->filter_norm = SPHFilterNorm(grad2 * sph->mass * sph->mass);
   sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
 
@@ -284,6 +286,7 @@ PetscErrorCode SPHDestroy(SPH *sph)
   }
   PetscCall(SPHFreeArrays_Internal(s));
   if (s->method && s->method->Destroy) PetscCall(s->method->Destroy(s));
+  PetscCall(SPHCompactDestroy_Internal(s));
   PetscCall(PetscFree(s->loops.grid.start));
   free(s->loops.neighbour);
   free(s->loops.gradient);

@@ -34,6 +34,7 @@ typedef struct {
   PetscReal relax_time;       /* tau [s] of the density source; 0 = 0.5 h/max(sqrt(g h), mean velocity)  */
   PetscReal wall_factor;      /* s of method 2; 0 = calibrated value of kernel and h/dx                  */
   PetscReal noise_damping;    /* rate of the noise filter over sqrt(g/h); 0 = no filter                  */
+  PetscReal shifting;         /* strength of particle shifting; negative = auto: 4 with isph, else 0       */
   PetscReal mean_velocity[3]; /* target of the body-force controller [m/s]; 0 0 0 = no controller        */
   PetscBool free_surface;     /* clamp p >= 0                                                            */
   int       solver;           /* SPHSolver                                                               */

@@ -61,7 +61,7 @@ static PetscErrorCode SolveJacobi(SPH sph, const SPHOperator *op)
 
 PetscErrorCode SPHPackSolve_Internal(SPH sph)
 {
-  const SPHOperator op = {1.0, NULL, NULL};
+  const SPHOperator op = {1.0, NULL, NULL, PETSC_FALSE};
 
   PetscFunctionBegin;
   SPHPrepare_Internal(sph, 1.0, 0.0);

@@ -28,6 +28,7 @@ typedef struct {
   PetscReal   dt;
   SPHResponse response;
   void       *ctx;
+  PetscBool   compact; /* the compact Laplacian of sph_isph.c in place of D D^T */
 } SPHOperator;
 
 /* A pressure solver (sph.solver), one file each. Whatever it does, its effect on a step is one p~ a particle at the configuration of the step,
@@ -63,6 +64,19 @@ typedef struct {
   PetscReal area, force;    /* [m^2], [N] along the outward normal, of the last step      */
 } SPHPatch;
 
+/* of the compact operator and of corrected gradients (sph_isph.c, sph_shift.c); allocated when first used */
+typedef struct {
+  PetscInt   allocated;              /* particles                                              */
+  size_t     slots;                  /* pairs                                                  */
+  PetscReal *distance;               /* n x SPH_IMAGES [m]                                     */
+  PetscReal *moments;                /* n x 6, B: inverse of sum_j V (x_j - x_i) grad W_ij [1] */
+  PetscReal *trace;                  /* n, scale of the coefficients [1]                       */
+  PetscReal *velocity_gradient;      /* n x 9 [1/s]                                            */
+  PetscReal *pressure_gradient;      /* n x 3 [Pa/m]                                           */
+  PetscReal *fullness;               /* n, least eigenvalue of the full moments [1]            */
+  PetscReal *shift;                  /* n x 3 [m]                                              */
+} SPHCompactWork;
+
 struct _p_SPH {
   PETSCHEADER(int);
   SPHParams params;
@@ -79,6 +93,8 @@ struct _p_SPH {
   PetscReal particle_volume;         /* [m^3] asked for; 0 = spacing^3                   */
 
   /* derived at SetUp */
+  PetscReal wall_flux;               /* factor on rho0 grad phi in G: 1, or 2/s where images share the flux (sph_isph.c) */
+  PetscReal shifting;                /* strength in use [1]                              */
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
@@ -107,6 +123,9 @@ struct _p_SPH {
   PetscReal *mode;                   /* where the power iteration for the norm starts    */
   PetscReal  norm;                   /* largest eigenvalue of S D D^T S [1]              */
   PetscReal *partial;                /* SPH_CHUNKS(capacity) x SPH_SUMS                  */
+
+  SPHCompactWork   compact;
+  const PetscReal *wall_gradient;    /* n x 3 [Pa/m] by which p is continued to walls; NULL = not continued */
 
   /* second copies for sorting */
   PetscReal *x_alt, *v_alt, *p_alt;
@@ -150,6 +169,7 @@ PETSC_INTERN PetscErrorCode SPHWallRate_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
 /* force [N] of the pressure of particle i on plane k along the plane's axis */
 PETSC_INTERN PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k);
+PETSC_INTERN PetscReal SPHSurfaceDistance_Internal(SPH sph, const SPHContacts *contacts, PetscInt t);
 /* distance [m] of a position from plane k (0..5), positive inside; gradient +-1 along its axis in *sign */
 static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], PetscReal *sign)
 {
@@ -188,6 +208,12 @@ PETSC_INTERN PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHWantsKSP_Internal(SPH sph, PetscBool *wanted);
 PETSC_INTERN PetscErrorCode SPHSolveKSP_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHDestroyKSP_Internal(SPH sph);
+/* sph_isph.c */
+PETSC_INTERN PetscErrorCode SPHCompact_Internal(SPH sph, PetscReal diagonal[]);
+PETSC_INTERN PetscErrorCode SPHCompactDestroy_Internal(SPH sph);
+PETSC_INTERN void           SPHVelocityGradient_Internal(SPH sph, const PetscReal v[]);
+/* sph_shift.c */
+PETSC_INTERN PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt);
 /* solve for the density alone, dt = 1, starting from nothing, with the walls at rest */
 PETSC_INTERN PetscErrorCode SPHPackSolve_Internal(SPH sph);
 

@@ -22,6 +22,7 @@ const Key SPHKeys[] = {
    "time in which a density error is corrected; 0 = 0.5 h/max(sqrt(g h), mean velocity) with iisph, one step with iisph_jacobi"},
   {"wall_factor", KEY_REAL, FIELD(wall_factor), "1", "0", 0, 2, 0, NULL, "scales the volume of planar walls; 0 = calibrated"},
   {"noise_damping", KEY_REAL, FIELD(noise_damping), "1", "3", 0, 10, 0, NULL, "rate at which the shortest waves of particle noise decay, over sqrt(g/h); 0 = no filter"},
+  {"shifting", KEY_REAL, FIELD(shifting), "1", "-1", -1, 20, 0, NULL, "strength of particle shifting, which spreads particles evenly where they are deformed; 0 = none, -1 = 4 with isph, else none"},
   {"mean_velocity", KEY_VEC3, FIELD(mean_velocity), "m/s", "0, 0, 0", -1e3, 1e3, 0, NULL, "mean velocity kept by a body force; a zero component is left alone"},
   {"free_surface", KEY_BOOL, FIELD(free_surface), "", "true", 0, 0, 0, NULL, "no negative pressure; false for a domain full of fluid"},
   {"solver", KEY_CHOICE, FIELD(solver), "", "auto", 0, 0, 0, Solvers, "pressure solver; auto = iisph with a free surface, isph without"},

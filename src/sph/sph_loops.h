@@ -5,6 +5,8 @@
 
 #define SPH_PAIR_CHUNK 256 /* particles whose neighbours share one slice of the list: the unit of work of a thread */
 
+#define SPH_IMAGES 7 /* mirrors of a particle: six planes and the nearest surface */
+
 /* cells of edge >= h, x fastest; a particle outside is in the nearest border cell */
 typedef struct {
   double lo[3], cell[3];     /* corner and edge of a cell [m]                            */
@@ -26,6 +28,7 @@ typedef struct {
   int          *count;       /* n, neighbours of i (without i)                           */
   int          *neighbour;   /* n_chunks SPH_PAIR_CHUNK capacity                         */
   void         *gradient;    /* real, 3 per slot: m grad_i W_ij [kg/m^4]                 */
+  void         *compact;     /* real, 1 per slot: c_ij of SPHPairLaplacian [kg/m^5]; NULL unless the solver is isph */
   void         *near_x;      /* real, 3 x n: positions from the grid's corner, x.. y.. z.. */
   void         *pressure;    /* real, n: p~                                              */
   void         *vector;      /* real, 4 per particle: acceleration or velocity           */
@@ -48,6 +51,13 @@ typedef struct {
   void (*Diagonal)(const SPHLoops *l, double diagonal[]);                        /* of D D^T                             */
   void (*Viscosity)(const SPHLoops *l, int central, double mu_over_rho2, double a[]); /* a += viscous acceleration of vector */
   void (*Filter)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum [(v_i - v_j) . g] g of vector */
+  /* compact Laplacian and corrected gradients; distance: SPH_IMAGES per particle [m], >= h where there is no wall */
+  void (*Compact)(const SPHLoops *l, const double distance[], double moments[], double trace[]); /* -> compact; sum c d d^T (6), its trace with images */
+  void (*ScaleCompact)(const SPHLoops *l, const double s[], double diagonal[]);  /* compact_ij *= (s_i + s_j)/2; sums of rows */
+  void (*Laplacian)(const SPHLoops *l, double factor, const double scale[], double out[]); /* factor scale sum c_ij (p_i - p_j) */
+  void (*Difference)(const SPHLoops *l);                                         /* vector = sum (p_j - p_i) m grad W    */
+  void (*VelocityGradient)(const SPHLoops *l, double gradient[]);                /* n x 9: sum (v_j - v_i)_a (m grad W)_b of vector */
+  void (*Concentration)(const SPHLoops *l, double w0, double gradient[]);        /* n x 3: sum weight m grad W           */
 } SPHLoopTable;
 
 extern const SPHLoopTable SPHLoopsOpenMPSingle, SPHLoopsOpenMPDouble;

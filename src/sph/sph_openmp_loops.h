@@ -401,5 +401,8 @@ static void Filter(const SPHLoops *l, double factor, double a[])
   }
 }
 
+#include "sph_openmp_compact.h"
+
 const SPHLoopTable SPH_TABLE = {SPH_LABEL, (int)sizeof(real), Pairs, Move,     Density,   SetWalls, SetPressure, SetVelocity, Acceleration,
-                                GetVector, Rate,              Diagonal, Viscosity, Filter};
+                                GetVector, Rate,              Diagonal, Viscosity, Filter,
+                                Compact,   ScaleCompact, Laplacian, Difference, VelocityGradient, Concentration};

@@ -21,6 +21,22 @@ BY_HD SPH_REAL SPHPairRate(const SPH_REAL v_i[3], const SPH_REAL v_j[3], const S
   return (v_i[0] - v_j[0])*gradient[0] + (v_i[1] - v_j[1])*gradient[1] + (v_i[2] - v_j[2])*gradient[2];
 }
 
+/* compact Laplacian, (L p~)_i = 2 rho0 sum_j c_ij (p~_i - p~_j), c_ij = -m F_ij: - rho0^2 times the Laplacian in pairs of neighbours, symmetric,
+   without the two-cell modes that D D^T does not see [Cummins & Rudman 1999 eq. 21; Brookshaw 1985] */
+BY_HD SPH_REAL SPHPairLaplacian(SPH_REAL c, SPH_REAL p_i, SPH_REAL p_j) { return c * (p_i - p_j); }
+
+/* squared distance from i, at d_i from a plane, to the image of j, at d_j: r'^2 = r^2 + 4 d_i d_j, symmetric in i and j; with images of equal
+   pressure added to c_ij no flux crosses the plane and the operator stays symmetric (ours) */
+BY_HD SPH_REAL SPHPairImage(SPH_REAL r2, SPH_REAL d_i, SPH_REAL d_j) { return r2 + (SPH_REAL)4*d_i*d_j; }
+
+/* weight of a neighbour in the gradient of concentration that shifting follows, 1 + 0.2 (W/W(dx))^4, against pairing
+   [Monaghan 2000; Lind, Xu, Stansby & Rogers 2012 eq. 27] */
+BY_HD SPH_REAL SPHPairConcentration(SPH_REAL w_over_w0)
+{
+  const SPH_REAL w2 = w_over_w0 * w_over_w0;
+  return (SPH_REAL)1 + (SPH_REAL)0.2*w2*w2;
+}
+
 /* viscous acceleration, two forms of the SPH Laplacian:
      Monaghan  a_i = sum_j 2(d+2) (mu/rho0^2) (v_ij . x_ij)/(r^2 + 0.01 h^2) m grad W_ij, d = 3   [Monaghan 2005 eq. 8.8; method 1]
                keeps angular momentum; in layers along a wall it shows 0.7 of the viscosity that it shows in disorder

@@ -19,8 +19,12 @@ PetscErrorCode SPHApply_Internal(SPH sph, const SPHOperator *op, const PetscReal
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Apply, sph, 0, 0, 0));
   table->SetPressure(&sph->loops, y, sph->scale);
-  table->Acceleration(&sph->loops);
-  table->Rate(&sph->loops, -op->dt * op->dt, sph->scale, out);
+  if (op->compact) {
+    table->Laplacian(&sph->loops, 2.0 * sph->params.density * op->dt * op->dt, sph->scale, out);
+  } else {
+    table->Acceleration(&sph->loops);
+    table->Rate(&sph->loops, -op->dt * op->dt, sph->scale, out);
+  }
   if (op->response) {
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < n; i++) {
@@ -135,7 +139,7 @@ const SPHSolverOps *SPHFindSolver_Internal(const SPHParams *params)
 @*/
 PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, void *ctx)
 {
-  const SPHOperator op = {dt, response, ctx};
+  const SPHOperator op = {dt, response, ctx, PETSC_FALSE};
 
   PetscFunctionBegin;
   PetscCheck(!response || sph->method->responds, PetscObjectComm((PetscObject)sph), PETSC_ERR_SUP, "solver %s takes no response of compliant walls: ask SPHGetSolver()", sph->method->name);

@@ -55,7 +55,7 @@ PetscErrorCode SPHFindPlanes_Internal(SPH sph)
     for (int k = 0; k < touched; k++) {
       const PetscReal c = OtherPlanes(touched, phi, k);
       open *= 1.0 - phi[k];
-      G[plane[k] / 2] += rho0 * c * slope[k];
+      G[plane[k] / 2] += sph->wall_flux * rho0 * c * slope[k];
       friction += SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
     }
     sph->open[i]          = open;
@@ -86,12 +86,35 @@ static PetscErrorCode AllocateSurfaces(SPH sph, PetscInt n, const SPHContacts co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* distance [m] of touched particle t from its surface, as lambda tells it */
+PetscReal SPHSurfaceDistance_Internal(SPH sph, const SPHContacts *contacts, PetscInt t)
+{
+  return sph->h * SPHHalfSpaceDistance(sph->params.kernel, contacts->phi[t] / sph->wall_factor);
+}
+
+/* pressure [Pa] of particle i at a wall at distance d along the unit vector -n */
+static PetscReal WallPressure(SPH sph, PetscInt i, PetscReal d, const PetscReal n[3])
+{
+  const PetscReal *gradient = sph->wall_gradient ? sph->wall_gradient + 3 * i : NULL;
+
+  return gradient ? sph->p[i] - d * (gradient[0] * n[0] + gradient[1] * n[1] + gradient[2] * n[2]) : sph->p[i];
+}
+
+/* force [N] of the pressure of particle i on plane k at distance d along the plane's axis; slope [1/m] of the union */
+static PetscReal PlanePressure(SPH sph, PetscInt i, int k, PetscReal d, PetscReal slope)
+{
+  PetscReal normal[3] = {0, 0, 0};
+
+  normal[k / 2] = k % 2 ? -1.0 : 1.0;
+  return sph->mass * WallPressure(sph, i, PetscMax(0.0, d), normal) / sph->params.density * sph->wall_flux * slope;
+}
+
 /* friction of touched particle t of a surface, from its distance as lambda tells it */
 static PetscReal SurfaceFriction(SPH sph, const SPHContacts *contacts, PetscInt t, PetscReal union_factor)
 {
   const PetscReal *grad  = contacts->grad + 3 * t;
   const PetscReal  slope = union_factor * sqrt(grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2]);
-  const PetscReal  d     = sph->h * SPHHalfSpaceDistance(sph->params.kernel, contacts->phi[t] / sph->wall_factor);
+  const PetscReal  d     = SPHSurfaceDistance_Internal(sph, contacts, t);
 
   return SPHWallFriction(sph->params.viscosity / sph->params.density, slope, FrictionDistance(sph, d));
 }
@@ -149,7 +172,7 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
     for (PetscInt s = 0; s < n_surfaces; s++) {
 #pragma omp parallel for schedule(static)
       for (PetscInt t = 0; t < contacts[s].n_touched; t++)
-        for (int k = 0; k < 3; k++) sph->G[3 * contacts[s].particle[t] + k] += rho0 * sph->surfaces[s].union_factor[t] * contacts[s].grad[3 * t + k];
+        for (int k = 0; k < 3; k++) sph->G[3 * contacts[s].particle[t] + k] += sph->wall_flux * rho0 * sph->surfaces[s].union_factor[t] * contacts[s].grad[3 * t + k];
     }
     sph->table->SetWalls(&sph->loops, sph->G);
   }
@@ -186,7 +209,7 @@ PetscErrorCode SPHWallRate_Internal(SPH sph)
         const PetscReal *v = q->velocity + 3 * q->proxy[b], *share = q->share + 3 * b;
         rate += share[0] * v[0] + share[1] * v[1] + share[2] * v[2];
       }
-      sph->wall_rate[q->particle[t]] += rho0 * sph->surfaces[s].union_factor[t] * rate;
+      sph->wall_rate[q->particle[t]] += sph->wall_flux * rho0 * sph->surfaces[s].union_factor[t] * rate;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -218,7 +241,7 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
           PetscReal      *f    = force + 3 * (plane[k] % 2);
 
           if (plane[k] / 2 != axis) continue;
-          f[axis] += sph->mass * sph->p[i] * to_tilde * rho0 * part * slope[k];
+          f[axis] += PlanePressure(sph, i, plane[k], d[k], part * slope[k]);
           if (nu > 0) {
             const PetscReal friction = sph->mass * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
             for (int a = 0; a < 3; a++) f[a] += friction * sph->v_star[3 * i + a];
@@ -241,7 +264,7 @@ PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k)
   const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
 
   for (int m = 0; m < touched; m++)
-    if (plane[m] == k) return sph->mass * sph->p[i] / sph->params.density * OtherPlanes(touched, phi, m) * sph->open_surfaces[i] * slope[m];
+    if (plane[m] == k) return PlanePressure(sph, i, k, d[m], OtherPlanes(touched, phi, m) * sph->open_surfaces[i] * slope[m]);
   return 0.0;
 }
 
@@ -257,8 +280,9 @@ static void SurfaceForces(SPH sph, SPHContacts *q, const SPHSurfaceWork *w)
   for (PetscInt t = 0; t < q->n_touched; t++) {
     const PetscInt   i        = q->particle[t];
     const PetscReal *x        = q->position + 3 * t, *grad = q->grad + 3 * t;
-    const PetscReal  pressure = sph->mass * sph->p[i] / rho0 * w->union_factor[t];
-    const PetscReal  grad2    = grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2];
+    const PetscReal  grad2 = grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2], size = sqrt(grad2);
+    const PetscReal  normal[3] = {size > 0 ? -grad[0] / size : 0.0, size > 0 ? -grad[1] / size : 0.0, size > 0 ? -grad[2] / size : 0.0};
+    const PetscReal  pressure  = sph->mass * WallPressure(sph, i, sph->wall_gradient ? SPHSurfaceDistance_Internal(sph, q, t) : 0.0, normal) / rho0 * sph->wall_flux * w->union_factor[t];
     const PetscReal  friction = nu > 0 && grad2 > 0 ? sph->mass * w->friction[t] / grad2 : 0.0;
     PetscReal        sum[3]   = {0, 0, 0};
 

@@ -1,0 +1,45 @@
+/* sph_shift.c - particle shifting: particles move a little down the gradient of their concentration, and take the velocity of where they arrive.
+
+     dr_i = -s dt |grad v|_i h^2 grad C_i,  grad C_i = sum_j V weight grad W_ij + grad phi_i,  v_i += (grad v)_i dr_i
+   [Lind, Xu, Stansby & Rogers 2012 eq. 23-28; Skillen, Lind, Stansby & Rogers 2013 eq. 25]. The rate of deformation |grad v| stands in the place of
+   Skillen's |v|/h: what disorders particles is deformation, and nothing that moves like a rigid body or rests is shifted. At a free surface,
+   where the neighbourhood is not full, only the part of dr along the surface is kept. */
+#include <math.h>
+
+#include "mat3.h"
+#include "sph_impl.h"
+
+#define SPH_SHIFT_STABLE 0.05 /* of h^2: a larger step of this explicit diffusion overshoots            */
+#define SPH_SHIFT_MOST  0.2 /* longest shift in a step [dx]                                             */
+#define SPH_SHIFT_FULL  0.92 /* neighbourhoods less full than this are at a free surface                  */
+
+PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
+{
+  SPHCompactWork *w    = &sph->compact;
+  const int       n    = (int)sph->n;
+  const PetscReal rho0 = sph->params.density, h2 = sph->h * sph->h, most = SPH_SHIFT_MOST * sph->params.spacing;
+
+  PetscFunctionBegin;
+  if (sph->method != &SPHSolverISPH) PetscCall(SPHCompact_Internal(sph, sph->Adirection)); // isph has it from its solve
+  SPHVelocityGradient_Internal(sph, sph->v);
+  sph->table->Concentration(&sph->loops, SPHKernelW(sph->params.kernel, sph->params.spacing, sph->h), w->shift);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    const PetscReal *L = w->velocity_gradient + 9 * i, *G = sph->G + 3 * i;
+    PetscReal       *dr = w->shift + 3 * i, rate2 = 0, C[3], length, v[3];
+
+    for (int k = 0; k < 9; k++) rate2 += L[k] * L[k];
+    for (int k = 0; k < 3; k++) C[k] = dr[k] / rho0 + G[k] / (sph->wall_flux * rho0);
+    for (int k = 0; k < 3; k++) dr[k] = -PetscMin(sph->shifting * dt * sqrt(rate2), SPH_SHIFT_STABLE) * h2 * C[k];
+    if (sph->params.free_surface && w->fullness[i] < SPH_SHIFT_FULL) dr[0] = dr[1] = dr[2] = 0.0;
+    length = Norm3(dr);
+    if (length > most)
+      for (int k = 0; k < 3; k++) dr[k] *= most / length;
+    Mul3(L, dr, v);
+    for (int k = 0; k < 3; k++) {
+      sph->x[3 * i + k] += dr[k];
+      sph->v[3 * i + k] += v[k];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
