@@ -5,7 +5,7 @@ function(byssus_module name)
   set(MODULES ${MODULES} ${name} PARENT_SCOPE)
 endfunction()
 
-byssus_module(base src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/array.c src/backend.c src/surface.c src/surface_read.c src/course.c
+byssus_module(base src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/array.c src/backend.c src/surface.c src/surface_read.c src/course.c src/motion.c
   src/output.c src/output_file.c src/output_series.c src/output_xdmf.c src/output_table.c src/output_progress.c src/plot.c src/checkpoint.c)
 
 # results and checkpoints name the program's version

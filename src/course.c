@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const CourseNames[] = {"constant", "linear", "ramp", "sine", "table", NULL};
+const char *const CourseNames[] = {"constant", "linear", "quadratic", "ramp", "sine", "table", NULL};
 
 /* the numbers of a line, separated by blanks, commas or semicolons; returns how many, -1 when something else stands there */
 static int ParseLine(const char line[], double value[2])
@@ -93,6 +93,7 @@ static PetscErrorCode ReadTable(const char key[], const char path[], Course *cou
   Courses, with s = (t - start)/duration:
     constant  1
     linear    0 before start, then s, beyond 1 as well
+    quadratic 0 before start, then s^2, beyond 1 as well
     ramp      0, then 10 s^3 - 15 s^4 + 6 s^5, then 1: speed and acceleration are zero at both ends
     sine      sin(2 pi frequency (t - start) + phase), times the ramp when there is a duration; before start as at start
     table     the rows' values at t - start, straight between them, the first and last held beyond
@@ -113,7 +114,7 @@ PetscErrorCode CourseCreate(const char section[], const CourseParams *p, Course 
   course->duration = p->duration;
   course->omega    = 2.0 * PETSC_PI * p->frequency;
   course->phase    = PETSC_PI / 180.0 * p->phase;
-  if ((p->kind == COURSE_LINEAR || p->kind == COURSE_RAMP) && !(p->duration > 0.0)) {
+  if ((p->kind == COURSE_LINEAR || p->kind == COURSE_QUADRATIC || p->kind == COURSE_RAMP) && !(p->duration > 0.0)) {
     PetscCall(PetscSNPrintf(key, sizeof key, "%s.duration", section));
     PetscFunctionReturn(InputError(key, "does not fit the course %s\nexpected a duration > 0 [s]", CourseNames[p->kind]));
   }
@@ -188,6 +189,11 @@ void CourseAt(const Course *c, PetscReal time, PetscReal g[3])
   case COURSE_LINEAR:
     g[1] = t < 0.0 ? 0.0 : 1.0 / c->duration;
     g[0] = g[1] * t;
+    break;
+  case COURSE_QUADRATIC:
+    g[2] = t < 0.0 ? 0.0 : 2.0 / (c->duration * c->duration);
+    g[1] = g[2] * t;
+    g[0] = 0.5 * g[1] * t;
     break;
   case COURSE_RAMP:
     Ramp(t / c->duration, g);

@@ -4,13 +4,13 @@
 
 #include "keys.h"
 
-typedef enum { COURSE_CONSTANT, COURSE_LINEAR, COURSE_RAMP, COURSE_SINE, COURSE_TABLE } CourseKind;
+typedef enum { COURSE_CONSTANT, COURSE_LINEAR, COURSE_QUADRATIC, COURSE_RAMP, COURSE_SINE, COURSE_TABLE } CourseKind;
 
 /* As a scene says it; a section that has a course takes COURSE_KEYS into its table. */
 typedef struct {
   int       kind;                      /* CourseKind                                                                 */
   PetscReal start;                     /* [s]                                                                        */
-  PetscReal duration;                  /* [s] of linear (to reach 1) and ramp; of sine: fades in over it             */
+  PetscReal duration;                  /* [s] of linear, quadratic (to reach 1), ramp; of sine: fades in over it     */
   PetscReal frequency, phase;          /* [Hz], [deg] of sine                                                        */
   char      table[PETSC_MAX_PATH_LEN]; /* of table: CSV file of time [s], value                                      */
 } CourseParams;
@@ -28,10 +28,10 @@ BY_EXTERN const char *const CourseNames[]; /* words of CourseKind */
 /* rows of a Key table for the CourseParams `member` of the struct S */
 #define COURSE_KEYS(S, member)                                                                                                     \
   {"course", KEY_CHOICE, offsetof(S, member.kind), "", "constant", 0, 0, 0, CourseNames,                                           \
-   "how it goes with time: constant 1, linear to 1 in duration and on, ramp smoothly to 1 in duration, sine, table"},              \
+   "how it goes with time: constant 1, linear or quadratic to 1 in duration and on, ramp smoothly to 1 in duration, sine, table"},              \
     {"start", KEY_REAL, offsetof(S, member.start), "s", "0", -1e9, 1e9, 0, NULL, "when the course begins"},                        \
     {"duration", KEY_REAL, offsetof(S, member.duration), "s", "0", 0, 1e9, 0, NULL,                                                \
-     "of linear and ramp; of sine: it fades in over this time"},                                                                   \
+     "of linear, quadratic and ramp; of sine: it fades in over this time"},                                                                   \
     {"frequency", KEY_REAL, offsetof(S, member.frequency), "Hz", "0", 0, 1e9, 0, NULL, "of sine"},                                 \
     {"phase", KEY_REAL, offsetof(S, member.phase), "deg", "0", -1e6, 1e6, 0, NULL, "of sine"},                                     \
   {                                                                                                                                \

@@ -12,7 +12,7 @@ typedef struct {
   PetscReal      drift;   /* largest imbalance of energy over the largest energy in motion and strain   */
   VerifyClock    time;    /* taken                                                                      */
   VerifyDifference apart; /* from the reference, worst of all samples                                   */
-} Motion;
+} Trajectory;
 
 /* an implicit solver; unless the scene says otherwise it loses nothing of any mode (trapezoidal rule), as the explicit one */
 static PetscErrorCode NewImplicit(Verify *v, TLEDImplicit *implicit)
@@ -59,7 +59,7 @@ static PetscErrorCode Energy(TLED tled, PetscReal *balance, PetscReal *moving)
 }
 
 /* the part of a run up to the next sample */
-static PetscErrorCode AdvanceSide(Verify *v, int side, TLEDImplicit implicit, const Motion *m, PetscInt n_steps)
+static PetscErrorCode AdvanceSide(Verify *v, int side, TLEDImplicit implicit, const Trajectory *m, PetscInt n_steps)
 {
   TLED           tled = VerifyBody(v, side);
   PetscErrorCode ierr = PETSC_SUCCESS;
@@ -79,7 +79,7 @@ static PetscErrorCode AdvanceSide(Verify *v, int side, TLEDImplicit implicit, co
 }
 
 /* one run from the state that was saved, m->n_steps steps */
-static PetscErrorCode Move(Verify *v, int side, Motion *m)
+static PetscErrorCode Move(Verify *v, int side, Trajectory *m)
 {
   TLED           tled = VerifyBody(v, side);
   TLEDImplicit   implicit = NULL;
@@ -133,10 +133,10 @@ static VerifyDifference CompareRuns(PetscInt samples, PetscInt n, const PetscRea
 }
 
 /* two implicit runs, extrapolated into reference->u */
-static PetscErrorCode Reference(Verify *v, PetscInt n, PetscReal critical, Motion *reference)
+static PetscErrorCode Reference(Verify *v, PetscInt n, PetscReal critical, Trajectory *reference)
 {
   const PetscInt samples = v->params.samples;
-  Motion         coarse  = {0};
+  Trajectory         coarse  = {0};
 
   PetscFunctionBegin;
   coarse.n_steps     = samples * (PetscInt)PetscCeilReal(v->params.duration / (samples * v->params.implicit_step * critical));
@@ -152,7 +152,7 @@ static PetscErrorCode Reference(Verify *v, PetscInt n, PetscReal critical, Motio
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MotionEntry(Verify *v, const char key[], const Motion *m, PetscReal order)
+static PetscErrorCode MotionEntry(Verify *v, const char key[], const Trajectory *m, PetscReal order)
 {
   PetscFunctionBegin;
   PetscCall(JsonBegin(v->json, key));
@@ -168,15 +168,15 @@ static PetscErrorCode MotionEntry(Verify *v, const char key[], const Motion *m, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal Order(const Motion *coarse, const Motion *fine)
+static PetscReal Order(const Trajectory *coarse, const Trajectory *fine)
 {
   return PetscLogReal(coarse->apart.max / fine->apart.max) / PetscLogReal(coarse->step / fine->step);
 }
 
-static PetscErrorCode PrintTable(Verify *v, const Motion *reference, PetscInt n_runs, const Motion runs[])
+static PetscErrorCode PrintTable(Verify *v, const Trajectory *reference, PetscInt n_runs, const Trajectory runs[])
 {
   char            text[160];
-  const Motion   *finest = &runs[n_runs - 1];
+  const Trajectory   *finest = &runs[n_runs - 1];
   const PetscReal order  = n_runs > 1 ? Order(&runs[n_runs - 2], finest) : 0.0;
 
   PetscFunctionBegin;
@@ -228,7 +228,7 @@ static PetscInt BusiestNode(PetscInt samples, PetscInt n, const PetscReal u[])
 }
 
 /* <body>_dynamic.csv: the node that moves most, in the reference and in the finest explicit run, and the difference of every run */
-static PetscErrorCode History(Verify *v, PetscInt n, const Motion *reference, PetscInt n_runs, const Motion runs[])
+static PetscErrorCode History(Verify *v, PetscInt n, const Trajectory *reference, PetscInt n_runs, const Trajectory runs[])
 {
   const PetscInt samples = v->params.samples, node = BusiestNode(samples, n, reference->u);
   char           file[2 * BY_NAME_MAX], names[BY_REALS_MAX][64];
@@ -261,7 +261,7 @@ static PetscErrorCode History(Verify *v, PetscInt n, const Motion *reference, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Results(Verify *v, PetscInt n, const Motion *reference, const Motion *finest)
+static PetscErrorCode Results(Verify *v, PetscInt n, const Trajectory *reference, const Trajectory *finest)
 {
   Series series[2];
 
@@ -280,7 +280,7 @@ static PetscErrorCode Results(Verify *v, PetscInt n, const Motion *reference, co
 }
 
 /* explicit runs; each step is a whole part of the next larger one, as near to what was asked as that allows */
-static PetscErrorCode ExplicitRuns(Verify *v, PetscInt n, PetscReal critical, const Motion *reference, Motion runs[])
+static PetscErrorCode ExplicitRuns(Verify *v, PetscInt n, PetscReal critical, const Trajectory *reference, Trajectory runs[])
 {
   const VerifyParams *p = &v->params;
   const PetscInt      first = p->samples * (PetscInt)PetscCeilReal(p->duration / (p->samples * p->steps.value[0] * critical));
@@ -297,7 +297,7 @@ static PetscErrorCode ExplicitRuns(Verify *v, PetscInt n, PetscReal critical, co
 /*@ VerifyDynamic - implicit reference, explicit runs at every step, table, history; both sides are put back to where they were @*/
 PetscErrorCode VerifyDynamic(Verify *v)
 {
-  Motion      reference = {0}, runs[BY_REALS_MAX] = {{0}};
+  Trajectory      reference = {0}, runs[BY_REALS_MAX] = {{0}};
   PetscReal   critical;
   PetscInt    n;
 

@@ -89,6 +89,7 @@ PetscErrorCode SPHSetDomain(SPH sph, const PetscReal min[3], const PetscReal max
   sph->has_domain = PETSC_TRUE;
   sph->walls      = walls & 63;
   sph->periodic   = periodic & 7;
+  SPHPlace_Internal(sph);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -96,6 +97,7 @@ PetscErrorCode SPHSetGravity(SPH sph, const PetscReal g[3])
 {
   PetscFunctionBegin;
   for (int k = 0; k < 3; k++) sph->gravity[k] = g[k];
+  SPHPlace_Internal(sph);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,6 +186,7 @@ static PetscErrorCode AllocateState(SPH sph)
   PetscCall(SPHAddArray_Internal(sph, &sph->id_alt, sizeof(PetscInt)));
   PetscCall(SPHAddArray_Internal(sph, &sph->order, sizeof(PetscInt)));
   if (sph->params.viscosity > 0) PetscCall(SPHAddArray_Internal(sph, &sph->friction_planes, one));
+  if (sph->frame) PetscCall(SPHAddArray_Internal(sph, &sph->frame_kick, 3 * one));
 
   // the neighbour list is allocated when it is first built
   PetscCall(SPHAddArray_Internal(sph, &l->cell, sizeof(int)));

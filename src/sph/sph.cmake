@@ -4,6 +4,7 @@ if(BYSSUS_HAVE_CUDA)
   set(SPH_DEVICE src/sph/sph_cuda.cu)
 endif()
 byssus_module(sph
+  src/sph/sph_motion.c
   src/sph/sph.c src/sph/sph_arrays.c src/sph/sph_keys.c src/sph/sph_neighbors.c src/sph/sph_walls.c src/sph/sph_sums.c src/sph/sph_time.c src/sph/sph_stop.c
   src/sph/sph_viscosity.c src/sph/sph_pressure.c src/sph/sph_iisph.c src/sph/sph_mprgp.c src/sph/sph_closed.c src/sph/sph_isph.c src/sph/sph_shift.c src/sph/sph_dfsph.c src/sph/sph_pcisph.c
   src/sph/sph_pbf.c src/sph/sph_wcsph.c src/sph/sph_ksp.c src/sph/sph_gauge.c src/sph/sph_patch.c src/sph/sph_state.c

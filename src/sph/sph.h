@@ -3,6 +3,7 @@
 #define BY_SPH_H
 
 #include "keys.h"
+#include "motion.h"
 
 typedef struct _p_SPH *SPH;
 
@@ -61,6 +62,7 @@ typedef struct {
   const PetscReal *share;         /* n_pairs x 3 [1/m]                                                     */
   PetscInt         n_proxies;
   const PetscReal *velocity;      /* n_proxies x 3 [m/s], mean over the coming step; NULL = at rest        */
+  PetscBool        slip;          /* a viscous fluid slips along it                                        */
   PetscReal       *force;         /* n_proxies x 3 [N], out: force of the fluid on each proxy; may be NULL */
   PetscReal        total[3];      /* [N] out: total force of the fluid on this surface                     */
   PetscReal        moment[3];     /* [N m] out: its moment about the origin, applied where the particles are */
@@ -78,6 +80,10 @@ BY_EXTERN PetscErrorCode SPHSetFromOptions(SPH sph);
 /* walls: bit 2k = plane at min of axis k, bit 2k+1 = plane at max; periodic: bit k = axis k */
 BY_EXTERN PetscErrorCode SPHSetDomain(SPH sph, const PetscReal min[3], const PetscReal max[3], unsigned walls, unsigned periodic);
 BY_EXTERN PetscErrorCode SPHSetGravity(SPH sph, const PetscReal g[3]);
+/* prescribed motion (sph_motion.c): planes that a viscous fluid slips along, planes that move, a tank that moves; motions are borrowed */
+BY_EXTERN PetscErrorCode SPHSetSlip(SPH sph, unsigned walls);
+BY_EXTERN PetscErrorCode SPHSetWallMotion(SPH sph, unsigned walls, const Motion *motion);
+BY_EXTERN PetscErrorCode SPHSetFrame(SPH sph, const Motion *motion);
 /* positions n x 3 [m], velocities n x 3 [m/s]; may be called several times before SetUp; copied */
 BY_EXTERN PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const PetscReal v[]);
 /* volume of fluid [m^3] that a particle stands for, where it is not spacing^3: a lattice stretched to fill a closed box exactly; before SetUp */
@@ -124,7 +130,7 @@ BY_EXTERN PetscErrorCode SPHGetDomain(SPH sph, PetscReal min[3], PetscReal max[3
 /* restart: all particles by id (0..n-1): x, v [n x 3], p [n] (warm start); and the controller's state */
 BY_EXTERN PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const PetscReal x[], const PetscReal v[], const PetscReal p[]);
 /* numbers beside the particles that the next step depends on, so that a restart gives the same bits */
-#define SPH_INTERNALS 11
+#define SPH_INTERNALS 14
 BY_EXTERN PetscErrorCode SPHGetInternals(SPH sph, PetscReal state[SPH_INTERNALS]);
 BY_EXTERN PetscErrorCode SPHSetInternals(SPH sph, const PetscReal state[SPH_INTERNALS]);
 
@@ -150,6 +156,7 @@ typedef struct {
   PetscReal compression_max;
   PetscReal speed_max, speed_rms;  /* [m/s]                                                                */
   PetscReal viscous_loss;          /* [J] since the start                                                  */
+  PetscReal wall_work, frame_work; /* [J] done on the fluid since the start by planes that move, and by the motion of the tank */
   PetscInt  iterations;            /* of the last pressure solve                                           */
   PetscBool converged;             /* of the last pressure solve                                           */
   PetscReal body_force[3];         /* of the mean-velocity controller [m/s^2]                              */

@@ -139,8 +139,8 @@ PetscErrorCode SPHGetHeight(SPH sph, const PetscReal at[3], PetscReal *height)
     for (int a = 0; a < m; a++) {
       const PetscReal du = (2.0 * (a + 0.5) / m - 1.0) * sph->h, dw = (2.0 * (b + 0.5) / m - 1.0) * sph->h;
       const PetscReal pu = at[u] + du, pw = at[w] + dw;
-      const int       beyond = ((sph->walls >> (2 * u) & 1) && pu < sph->min[u]) || ((sph->walls >> (2 * u + 1) & 1) && pu > sph->max[u]) ||
-                         ((sph->walls >> (2 * w) & 1) && pw < sph->min[w]) || ((sph->walls >> (2 * w + 1) & 1) && pw > sph->max[w]);
+      const int       beyond = ((sph->walls >> (2 * u) & 1) && pu < sph->plane[2 * u]) || ((sph->walls >> (2 * u + 1) & 1) && pu > sph->plane[2 * u + 1]) ||
+                         ((sph->walls >> (2 * w) & 1) && pw < sph->plane[2 * w]) || ((sph->walls >> (2 * w + 1) & 1) && pw > sph->plane[2 * w + 1]);
       if (!beyond) area += ColumnWeight(sqrt(du * du + dw * dw) / sph->h);
     }
   }
@@ -206,7 +206,8 @@ PetscErrorCode SPHGetSurface(SPH sph, const PetscReal at[3], PetscReal *height)
 /*@
   SPHGetStats - energies, momenta, density errors of the current state, and the last pressure solve
 
-  Density is that of the last SPHPredict(); potential energy is - m g . x.
+  Density is that of the last SPHPredict(); potential energy is - m g . x, with g as
+  seen from the tank. Kinetic, potential and lost energy grow by what walls, tank and bodies do on the fluid.
 @*/
 PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
 {
@@ -221,7 +222,7 @@ PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
       PetscReal s[SPH_SUMS] = {0};
 
       for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
-        const PetscReal *x = sph->x + 3 * i, *v = sph->v + 3 * i, *g = sph->gravity;
+        const PetscReal *x = sph->x + 3 * i, *v = sph->v + 3 * i, *g = sph->gravity_now;
         const PetscReal  v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], excess = PetscMax(0.0, sph->rho[i] / rho0 - 1.0);
 
         if (pass == 1) {
@@ -254,6 +255,8 @@ PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
   stats->speed_max        = sqrt(fastest);
   stats->speed_rms        = sqrt(first[0] / n);
   stats->viscous_loss     = sph->viscous_loss;
+  stats->wall_work        = sph->wall_work;
+  stats->frame_work       = sph->frame_work;
   stats->iterations       = sph->iterations;
   stats->converged        = sph->converged;
   PetscFunctionReturn(PETSC_SUCCESS);

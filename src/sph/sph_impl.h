@@ -5,6 +5,7 @@
 #include <petsc/private/petscimpl.h>
 
 #include "sph.h"
+#include "sph_frame.h"
 #include "sph_loops.h"
 #include "sph_pair.h"
 
@@ -89,8 +90,18 @@ struct _p_SPH {
   PetscBool has_domain;
   PetscReal min[3], max[3];          /* [m]                                              */
   unsigned  walls, periodic;         /* bits of SPHSetDomain                             */
-  PetscReal gravity[3];              /* [m/s^2]                                          */
   PetscReal particle_volume;         /* [m^3] asked for; 0 = spacing^3                   */
+  PetscReal gravity[3];              /* [m/s^2] of the laboratory                        */
+
+  /* prescribed motion; motions are borrowed, NULL = at rest */
+  PetscReal     time;                /* [s]                                              */
+  const Motion *motion[6], *frame;   /* of the planes, of the whole tank                 */
+  unsigned      slip;                /* planes without friction                          */
+  PetscReal     plane[6];            /* where they are, along their axes [m]             */
+  PetscReal     plane_velocity[18];  /* mean over the coming step, from SPHPredict [m/s] */
+  PetscReal     gravity_now[3];      /* as seen from the tank [m/s^2]                    */
+  PetscReal    *frame_kick;          /* n x 3 [m/s] of the step; with a frame only       */
+  PetscReal     wall_work, frame_work; /* [J] on the fluid since the start               */
 
   /* derived at SetUp */
   PetscReal wall_flux;               /* factor on rho0 grad phi in G: 1, or 2/s where images share the flux (sph_isph.c) */
@@ -174,8 +185,20 @@ PETSC_INTERN PetscReal SPHSurfaceDistance_Internal(SPH sph, const SPHContacts *c
 static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], PetscReal *sign)
 {
   *sign = k % 2 ? -1.0 : 1.0;
-  return k % 2 ? sph->max[k / 2] - x[k / 2] : x[k / 2] - sph->min[k / 2];
+  return *sign * (x[k / 2] - sph->plane[k]);
 }
+/* friction of the planes that move at particle i: drag = sum_k k_k v_k [m/s^2]; returns sum_k k_k |v_k|^2 [m^2/s^3] */
+PETSC_INTERN PetscReal SPHPlaneDrag_Internal(SPH sph, int i, PetscReal drag[3]);
+PETSC_INTERN PetscBool SPHPlanesMove_Internal(SPH sph);
+
+/* sph_motion.c */
+PETSC_INTERN void      SPHPlace_Internal(SPH sph);
+PETSC_INTERN void      SPHMovePlanes_Internal(SPH sph, PetscReal dt);
+PETSC_INTERN PetscReal SPHFastestPlane_Internal(SPH sph);
+PETSC_INTERN PetscReal SPHFrameAcceleration_Internal(SPH sph);
+PETSC_INTERN void      SPHFramePredict_Internal(SPH sph, PetscReal dt, PetscReal gravity[3]);
+PETSC_INTERN void      SPHFrameWork_Internal(SPH sph);
+PETSC_INTERN void      SPHTick_Internal(SPH sph, PetscReal dt);
 
 /* sph_patch.c */
 PETSC_INTERN void SPHPatchForces_Internal(SPH sph);

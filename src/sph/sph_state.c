@@ -41,7 +41,8 @@ PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const Petsc
   SPHGetInternals - numbers beside the particles that the next step depends on, for a restart that gives the same bits
 
   Output Parameter:
-. state - SPH_INTERNALS numbers: step, last dt, largest acceleration, controller (6), viscous loss, norm of the operator
+. state - SPH_INTERNALS numbers: step, last dt, largest acceleration, controller (6), viscous loss, norm of the operator, time, work of
+          walls and of the tank's motion
 @*/
 PetscErrorCode SPHGetInternals(SPH sph, PetscReal state[SPH_INTERNALS])
 {
@@ -55,6 +56,9 @@ PetscErrorCode SPHGetInternals(SPH sph, PetscReal state[SPH_INTERNALS])
   }
   state[9]  = sph->viscous_loss;
   state[10] = sph->norm;
+  state[11] = sph->time;
+  state[12] = sph->wall_work;
+  state[13] = sph->frame_work;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -70,6 +74,10 @@ PetscErrorCode SPHSetInternals(SPH sph, const PetscReal state[SPH_INTERNALS])
   }
   sph->viscous_loss = state[9];
   sph->norm         = state[10];
+  sph->time         = state[11];
+  sph->wall_work    = state[12];
+  sph->frame_work   = state[13];
+  SPHPlace_Internal(sph);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

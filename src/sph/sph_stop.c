@@ -1,7 +1,7 @@
 /* sph_stop.c - no particle ends a step inside a wall. Pressure keeps a fluid out, but it answers to density: a lone particle at impact
    speed can still end a step inside by a tenth of dx. Where the step would end nearer than SPH_STOP_GAP dx, the normal velocity relative to
-   the wall is cut so that it ends there (a plastic impact), and the wall gets the opposite impulse. Still water never comes so near. The
-   coupler does the same at the triangles of bodies (coupler_stop.c). */
+   the wall is cut so that it ends there (a plastic impact), and the wall gets the opposite impulse. Still water never comes so near. Walls
+   that move are met where they end the step. The coupler does the same at the triangles of bodies (coupler_stop.c). */
 #include "sph_impl.h"
 
 #define SPH_STOP_BACK 0.1  /* part of a penetration that is taken back in one step        */
@@ -48,7 +48,7 @@ void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt)
 
         if (!(sph->walls >> k & 1)) continue;
         gap     = SPHPlaneDistance(sph, k, sph->x + 3 * i, &sign);
-        lacking = Lacking(sph, gap, sign * sph->v[3 * i + k / 2], dt);
+        lacking = Lacking(sph, gap, sign * (sph->v[3 * i + k / 2] - sph->plane_velocity[3 * k + k / 2]), dt);
         sph->v[3 * i + k / 2] += sign * lacking;
         impulse[k] -= sign * lacking;
       }

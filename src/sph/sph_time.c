@@ -19,7 +19,7 @@ static PetscReal LargestSpeed(SPH sph)
     const PetscReal *v = sph->contacts[s].velocity;
     for (PetscInt b = 0; v && b < sph->contacts[s].n_proxies; b++) largest = PetscMax(largest, v[3 * b] * v[3 * b] + v[3 * b + 1] * v[3 * b + 1] + v[3 * b + 2] * v[3 * b + 2]);
   }
-  return sqrt(largest);
+  return PetscMax(sqrt(largest), SPHFastestPlane_Internal(sph));
 }
 
 /*@
@@ -28,7 +28,8 @@ static PetscReal LargestSpeed(SPH sph)
   Equation (method 1.3, after Monaghan 1992):
   dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.125 h^2/nu, 0.1 h/|U|, max_time_step ), and at most 1.1 times the last one
 
-  |a|max is that of the last step, U the mean velocity that is asked for. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
+  |v|max is of particles and walls, |a|max that of the last step, g with the largest acceleration of a moving tank, U the mean velocity that is
+  asked for. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
 
   Options Database Keys:
 + -sph_cfl <0.4>         - path of a particle in a step over spacing
@@ -38,7 +39,7 @@ static PetscReal LargestSpeed(SPH sph)
 PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
 {
   const SPHParams *par = &sph->params;
-  const PetscReal  g = Norm3(sph->gravity), nu = par->viscosity / par->density;
+  const PetscReal  g = Norm3(sph->gravity) + SPHFrameAcceleration_Internal(sph), nu = par->viscosity / par->density;
   const PetscReal  speed = LargestSpeed(sph);
   PetscReal        step  = 0.05 * sqrt(sph->h / (g > 0 ? g : 1.0));
 
@@ -97,16 +98,20 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
 {
   const int        n    = (int)sph->n;
   const PetscReal  rho0 = sph->params.density;
+  const PetscReal *from = sph->frame ? sph->v_star : sph->v;
   PetscReal        a[3];
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Predict, sph, 0, 0, 0));
   if (Norm3(sph->params.mean_velocity) > 0) ControlMeanVelocity(sph, dt);
-  for (int k = 0; k < 3; k++) a[k] = sph->gravity[k] + sph->body_force[k];
+  SPHMovePlanes_Internal(sph, dt);
+  for (int k = 0; k < 3; k++) a[k] = sph->gravity[k];
+  if (sph->frame) SPHFramePredict_Internal(sph, dt, a);
+  for (int k = 0; k < 3; k++) a[k] += sph->body_force[k];
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     sph->rho[i] = sph->rho_pairs[i] + rho0 * (1.0 - sph->open[i]);
-    for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = sph->v[3 * i + k] + dt * a[k];
+    for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = from[3 * i + k] + dt * a[k];
   }
   if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
   if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
@@ -136,6 +141,7 @@ PetscErrorCode SPHKick(SPH sph, PetscReal dt)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
+  if (sph->frame) SPHFrameWork_Internal(sph);
   if (sph->method->Accelerate) PetscCall(sph->method->Accelerate(sph, dt));
   else SPHPressureAcceleration_Internal(sph);
 #pragma omp parallel for schedule(static) reduction(max : accel2)
@@ -152,6 +158,8 @@ PetscErrorCode SPHKick(SPH sph, PetscReal dt)
   }
   sph->accel_max = sqrt(accel2);
   SPHStopAtPlanes_Internal(sph, dt);
+  for (int k = 0; k < 18; k++) sph->wall_work -= dt * sph->wall_force[k] * sph->plane_velocity[k];
+  if (sph->frame) SPHFrameWork_Internal(sph);
   PetscCall(PetscLogEventEnd(SPH_Advance, sph, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -214,6 +222,7 @@ PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
   if (sph->shifting > 0) PetscCall(SPHShift_Internal(sph, dt));
+  SPHTick_Internal(sph, dt);
   if (sph->method->Drift) PetscCall(sph->method->Drift(sph, dt, &path));
   else Drift(sph, dt, &path);
 #pragma omp parallel for schedule(static)

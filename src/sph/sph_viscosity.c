@@ -22,6 +22,7 @@ PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt)
 {
   const int       n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
   const PetscReal rho0 = sph->params.density;
+  const PetscBool moving = SPHPlanesMove_Internal(sph);
   PetscReal       loss;
 
   PetscFunctionBegin;
@@ -57,9 +58,12 @@ PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt)
     PetscReal sum = 0.0;
     for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
       const PetscReal k = sph->response[i];
+      PetscReal       drag[3] = {0, 0, 0};
+
+      if (moving) sum += SPHPlaneDrag_Internal(sph, i, drag);
       for (int q = 0; q < 3; q++) {
-        sph->v_star[3 * i + q] /= 1.0 + dt * k;
-        sum -= sph->v_star[3 * i + q] * (sph->accel[3 * i + q] - k * sph->v_star[3 * i + q]);
+        sph->v_star[3 * i + q] = (sph->v_star[3 * i + q] + dt * drag[q]) / (1.0 + dt * k);
+        sum -= sph->v_star[3 * i + q] * (sph->accel[3 * i + q] - k * sph->v_star[3 * i + q] + 2.0 * drag[q]);
       }
     }
     sph->partial[c * SPH_SUMS] = sum;

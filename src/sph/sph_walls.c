@@ -2,7 +2,8 @@
 
    Union of planes k and surfaces s:  1 - phi_i = prod_k (1 - phi_ik) prod_s (1 - phi_is)
      grad phi_i = sum_k c_ik grad phi_ik,  c_ik = product of (1 - phi) over all the others
-   so that the pressure solve sees one vector G_i = rho0 grad phi_i, whatever there is around. */
+   Planes of one axis have no part of the kernel in common, so that theirs add: prod_k over planes is prod over axes (1 - phi_min - phi_max).
+   The pressure solve thus sees one vector G_i = rho0 grad phi_i, whatever there is around. */
 #include <math.h>
 
 #include "sph_impl.h"
@@ -27,14 +28,14 @@ static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal 
   return n;
 }
 
-/* product of (1 - phi) over the planes other than k */
-static PetscReal OtherPlanes(int n, const PetscReal phi[], int k)
+/* what the planes of every axis but one leave open; axis -1: all */
+static PetscReal OpenBut(int n, const int plane[], const PetscReal phi[], int axis)
 {
-  PetscReal product = 1.0;
+  PetscReal open[3] = {1.0, 1.0, 1.0};
 
-  for (int m = 0; m < n; m++)
-    if (m != k) product *= 1.0 - phi[m];
-  return product;
+  for (int m = 0; m < n; m++) open[plane[m] / 2] -= phi[m];
+  if (axis >= 0) open[axis] = 1.0;
+  return PetscMax(0.0, open[0]) * PetscMax(0.0, open[1]) * PetscMax(0.0, open[2]);
 }
 
 /* A particle deep in a wall is a particle at distance `least` for friction: the first layer settles at 0.15 to 0.25 dx */
@@ -49,16 +50,15 @@ PetscErrorCode SPHFindPlanes_Internal(SPH sph)
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     int        plane[6];
-    PetscReal  phi[6], slope[6], d[6], G[3] = {0, 0, 0}, open = 1.0, friction = 0.0;
+    PetscReal  phi[6], slope[6], d[6], G[3] = {0, 0, 0}, friction = 0.0;
     const int  touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
 
     for (int k = 0; k < touched; k++) {
-      const PetscReal c = OtherPlanes(touched, phi, k);
-      open *= 1.0 - phi[k];
+      const PetscReal c = OpenBut(touched, plane, phi, plane[k] / 2);
       G[plane[k] / 2] += sph->wall_flux * rho0 * c * slope[k];
-      friction += SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
+      if (!(sph->slip >> plane[k] & 1)) friction += SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
     }
-    sph->open[i]          = open;
+    sph->open[i]          = OpenBut(touched, plane, phi, -1);
     sph->open_surfaces[i] = 1.0;
     for (int k = 0; k < 3; k++) sph->G[3 * i + k] = sph->G_planes[3 * i + k] = G[k];
     sph->wall_rate[i]     = 0.0;
@@ -66,6 +66,45 @@ PetscErrorCode SPHFindPlanes_Internal(SPH sph)
   }
   sph->table->SetWalls(&sph->loops, sph->G);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool SPHPlanesMove_Internal(SPH sph)
+{
+  PetscBool move = PETSC_FALSE;
+
+  for (int k = 0; k < 6; k++) move = (PetscBool)(move || (sph->motion[k] && (sph->walls >> k & 1)));
+  return move;
+}
+
+/* what planes that move give one particle: friction times velocity [m/s^2], times velocity again, and the density rate [kg/(m^3 s)] */
+static PetscReal FromPlanes(SPH sph, int i, PetscReal drag[3], PetscReal *power)
+{
+  const PetscReal rho0 = sph->params.density, nu = sph->params.viscosity / rho0;
+  PetscReal       phi[6], slope[6], d[6], rate = 0.0;
+  int             plane[6];
+  const int       touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
+
+  for (int k = 0; k < touched; k++) {
+    const PetscReal *v = sph->plane_velocity + 3 * plane[k], c = OpenBut(touched, plane, phi, plane[k] / 2) * sph->open_surfaces[i];
+
+    rate += rho0 * c * slope[k] * v[plane[k] / 2];
+    if (!drag || sph->slip >> plane[k] & 1) continue;
+    const PetscReal friction = SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
+    for (int a = 0; a < 3; a++) {
+      drag[a] += friction * v[a];
+      *power += friction * v[a] * v[a];
+    }
+  }
+  return rate;
+}
+
+PetscReal SPHPlaneDrag_Internal(SPH sph, int i, PetscReal drag[3])
+{
+  PetscReal power = 0.0;
+
+  for (int a = 0; a < 3; a++) drag[a] = 0.0;
+  (void)FromPlanes(sph, i, drag, &power);
+  return power;
 }
 
 static PetscErrorCode AllocateSurfaces(SPH sph, PetscInt n, const SPHContacts contacts[])
@@ -114,9 +153,9 @@ static PetscReal SurfaceFriction(SPH sph, const SPHContacts *contacts, PetscInt 
 {
   const PetscReal *grad  = contacts->grad + 3 * t;
   const PetscReal  slope = union_factor * sqrt(grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2]);
-  const PetscReal  d     = SPHSurfaceDistance_Internal(sph, contacts, t);
+  const PetscReal  d     = contacts->slip ? 0.0 : SPHSurfaceDistance_Internal(sph, contacts, t);
 
-  return SPHWallFriction(sph->params.viscosity / sph->params.density, slope, FrictionDistance(sph, d));
+  return contacts->slip ? 0.0 : SPHWallFriction(sph->params.viscosity / sph->params.density, slope, FrictionDistance(sph, d));
 }
 
 /*@
@@ -188,13 +227,18 @@ PetscErrorCode SPHGetUnionFactors(SPH sph, PetscInt surface, const PetscReal *c[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* wall_rate_i = sum_b rho0 c share . v_b, the density rate that the walls' own motion takes away */
+/* wall_rate_i = sum_b rho0 c share . v_b + sum_k v_k . G_ik, the density rate that the walls' own motion takes away */
 PetscErrorCode SPHWallRate_Internal(SPH sph)
 {
   const PetscReal rho0 = sph->params.density;
+  const int       n    = (int)sph->n;
 
   PetscFunctionBegin;
-  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
+  if (SPHPlanesMove_Internal(sph)) {
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < n; i++) sph->wall_rate[i] = FromPlanes(sph, i, NULL, NULL);
+  }
+  for (PetscInt s = 0; s < sph->n_surfaces && !SPHPlanesMove_Internal(sph); s++) {
     const SPHContacts *q = &sph->contacts[s];
 #pragma omp parallel for schedule(static)
     for (PetscInt t = 0; t < q->n_touched; t++) sph->wall_rate[q->particle[t]] = 0.0;
@@ -237,14 +281,15 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
         const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
 
         for (int k = 0; k < touched; k++) {
-          const PetscReal part = OtherPlanes(touched, phi, k) * sph->open_surfaces[i];
+          const PetscReal part = OpenBut(touched, plane, phi, axis) * sph->open_surfaces[i];
+          const PetscReal *v   = sph->plane_velocity + 3 * plane[k];
           PetscReal      *f    = force + 3 * (plane[k] % 2);
 
           if (plane[k] / 2 != axis) continue;
           f[axis] += PlanePressure(sph, i, plane[k], d[k], part * slope[k]);
-          if (nu > 0) {
+          if (nu > 0 && !(sph->slip >> plane[k] & 1)) {
             const PetscReal friction = sph->mass * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
-            for (int a = 0; a < 3; a++) f[a] += friction * sph->v_star[3 * i + a];
+            for (int a = 0; a < 3; a++) f[a] += friction * (sph->v_star[3 * i + a] - v[a]);
           }
         }
       }
@@ -264,7 +309,7 @@ PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k)
   const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
 
   for (int m = 0; m < touched; m++)
-    if (plane[m] == k) return PlanePressure(sph, i, k, d[m], OtherPlanes(touched, phi, m) * sph->open_surfaces[i] * slope[m]);
+    if (plane[m] == k) return PlanePressure(sph, i, k, d[m], OpenBut(touched, plane, phi, k / 2) * sph->open_surfaces[i] * slope[m]);
   return 0.0;
 }
 

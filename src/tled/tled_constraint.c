@@ -120,7 +120,7 @@ static PetscErrorCode CheckConstraint(const TLEDConstraint *c)
   if (p->kind != TLED_CONSTRAINT_MOTION) PetscFunctionReturn(PETSC_SUCCESS);
   if (!moves) REFUSE("translation", "moves nothing\na motion needs a translation [m] or an angle [deg]");
   if (p->angle != 0.0 && !(Norm3(p->axis) > 0.0)) REFUSE("axis", "has no direction\na rotation needs an axis, for example [0, 0, 1], and a point of it");
-  if (p->course.kind == COURSE_CONSTANT) REFUSE("course", "would jump\na motion needs a course: linear, ramp, sine or table");
+  if (p->course.kind == COURSE_CONSTANT) REFUSE("course", "would jump\na motion needs a course: linear, quadratic, ramp, sine or table");
 #undef REFUSE
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -164,14 +164,14 @@ static PetscErrorCode GroupPlane(TLED tled, const TLEDConstraint *c, const TLEDG
 }
 
 /* motions of all supports at time t */
-void TLEDMotionsAt_Private(const TLEDConstraints *c, PetscReal t, TLEDMotion motions[])
+void TLEDMotionsAt_Private(const TLEDConstraints *c, PetscReal t, RigidMotion motions[])
 {
   for (PetscInt i = 0; i < c->n; i++) {
     const TLEDConstraintParams *p = &c->item[i].params;
     double                      g[3];
     if (p->kind != TLED_CONSTRAINT_MOTION) continue;
     CourseAt(&c->item[i].course, t, g);
-    TLEDMotionAt(g, p->translation, PETSC_PI / 180.0 * p->angle, c->item[i].axis, p->point, &motions[i]);
+    RigidMotionAt(g, p->translation, PETSC_PI / 180.0 * p->angle, c->item[i].axis, p->point, &motions[i]);
   }
 }
 
@@ -199,8 +199,8 @@ static PetscBool Agrees(TLED tled, const TLEDHeld *h, PetscInt node, const doubl
     for (int k = -1; k < SAMPLES && of >= 0; k++) {
       double a[3], b[3];
       TLEDMotionsAt_Private(c, SampleTime(&c->item[of].course, ((PetscReal)k + 0.37) / (0.75 * SAMPLES)), c->now);
-      TLEDHeldPart(h, c->now, &tled->mesh.X[3 * node], TLED_MOTION_DISPLACEMENT, a);
-      TLEDHeldPart(&asked, c->now, &tled->mesh.X[3 * node], TLED_MOTION_DISPLACEMENT, b);
+      TLEDHeldPart(h, c->now, &tled->mesh.X[3 * node], MOTION_DISPLACEMENT, a);
+      TLEDHeldPart(&asked, c->now, &tled->mesh.X[3 * node], MOTION_DISPLACEMENT, b);
       if (PetscAbsReal(Dot3(n, a) - Dot3(n, b)) > AGREE * (Norm3(a) + Norm3(b))) return PETSC_FALSE;
     }
   }
@@ -386,7 +386,7 @@ PetscErrorCode TLEDPrescribed_Private(TLED tled, PetscReal t, PetscReal u[], Pet
   if (!c->moves) PetscFunctionReturn(PETSC_SUCCESS);
   TLEDMotionsAt_Private(c, t, c->now);
   for (PetscInt i = 0; i < c->n_held; i++)
-    for (int what = TLED_MOTION_DISPLACEMENT; what <= TLED_MOTION_ACCELERATION; what++)
+    for (int what = MOTION_DISPLACEMENT; what <= MOTION_ACCELERATION; what++)
       if (to[what]) TLEDHeldPart(&c->held[i], c->now, &tled->mesh.X[3 * c->node[i]], what, &to[what][3 * c->node[i]]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -444,7 +444,7 @@ PetscErrorCode TLEDGetReaction(TLED tled, const char name[], PetscReal force[3],
     const TLEDHeld *h = &c->held[c->held_of[a]];
     Sub3(&f_int[3 * a], &f_ext[3 * a], r);
     Mul3(h->P, r, free_r);
-    if (!(tled->state.is_static > 0.0)) TLEDHeldPart(h, c->now, &tled->mesh.X[3 * a], TLED_MOTION_ACCELERATION, held_a);
+    if (!(tled->state.is_static > 0.0)) TLEDHeldPart(h, c->now, &tled->mesh.X[3 * a], MOTION_ACCELERATION, held_a);
     for (int k = 0; k < 3; k++) {
       r[k] += tled->mass[a] * held_a[k] - free_r[k];
       x[k] = tled->mesh.X[3 * a + k] + u[3 * a + k];

@@ -8,15 +8,7 @@
 #ifndef BY_TLED_CONSTRAINT_H
 #define BY_TLED_CONSTRAINT_H
 
-#include "mat3.h"
-
-/* A moving support at one instant. */
-typedef struct {
-  double point[3], axis[3];            /* [m]; unit vector                                      */
-  double turn[9];                      /* R - I                                                 */
-  double spin, spin_rate;              /* rate of the angle [rad/s], and of that [rad/s^2]      */
-  double shift[3], speed[3], kick[3];  /* g t and its derivatives [m], [m/s], [m/s^2]           */
-} TLEDMotion;
+#include "motion.h"
 
 /* The conditions on one node. */
 typedef struct {
@@ -27,56 +19,15 @@ typedef struct {
   double P[9];       /* projector onto the free directions                           */
 } TLEDHeld;
 
-enum { TLED_MOTION_DISPLACEMENT = 0, TLED_MOTION_VELOCITY = 1, TLED_MOTION_ACCELERATION = 2 };
-
-/* the motion at an instant with g[] = g, dg/dt, d2g/dt2: R - I = sin(a) K + 2 sin^2(a/2) K^2, K x = axis x x, a = g angle [Rodrigues 1840] */
-BY_HD void TLEDMotionAt(const double g[3], const double translation[3], double angle, const double axis[3], const double point[3], TLEDMotion *m)
-{
-  const double a = g[0]*angle, s = sin(a), h = sin(0.5*a), c = 2.0*h*h;
-  const double x = axis[0], y = axis[1], z = axis[2];
-
-  m->turn[0] = -c*(y*y + z*z); m->turn[1] = c*x*y - s*z;    m->turn[2] = c*x*z + s*y;
-  m->turn[3] = c*x*y + s*z;    m->turn[4] = -c*(x*x + z*z); m->turn[5] = c*y*z - s*x;
-  m->turn[6] = c*x*z - s*y;    m->turn[7] = c*y*z + s*x;    m->turn[8] = -c*(x*x + y*y);
-  m->spin      = g[1]*angle;
-  m->spin_rate = g[2]*angle;
-  for (int k = 0; k < 3; k++) {
-    m->point[k] = point[k];
-    m->axis[k]  = axis[k];
-    m->shift[k] = g[0]*translation[k];
-    m->speed[k] = g[1]*translation[k];
-    m->kick[k]  = g[2]*translation[k];
-  }
-}
-
-/* displacement (R - I) r + g t, velocity w x Rr + g't or acceleration w' x Rr + w x (w x Rr) + g''t of the material point X, r = X - p */
-BY_HD void TLEDMotionOf(const TLEDMotion *m, const double X[3], int what, double value[3])
-{
-  double r[3], turned[3], across[3], inward[3];
-
-  Sub3(X, m->point, r);
-  Mul3(m->turn, r, turned);
-  if (what == TLED_MOTION_DISPLACEMENT) {
-    for (int k = 0; k < 3; k++) value[k] = turned[k] + m->shift[k];
-    return;
-  }
-  for (int k = 0; k < 3; k++) r[k] += turned[k];
-  Cross3(m->axis, r, across);
-  Cross3(m->axis, across, inward);
-  for (int k = 0; k < 3; k++)
-    value[k] = what == TLED_MOTION_VELOCITY ? m->spin*across[k] + m->speed[k]
-                                            : m->spin_rate*across[k] + m->spin*m->spin*inward[k] + m->kick[k];
-}
-
 /* held part of a node's displacement, velocity or acceleration: sum_j w_j (n_j . u_j) */
-BY_HD void TLEDHeldPart(const TLEDHeld *h, const TLEDMotion motions[], const double X[3], int what, double value[3])
+BY_HD void TLEDHeldPart(const TLEDHeld *h, const RigidMotion motions[], const double X[3], int what, double value[3])
 {
   double u[3] = {0.0, 0.0, 0.0};
 
   value[0] = value[1] = value[2] = 0.0;
   for (int j = 0; j < h->n; j++) {
     if (h->motion[j] < 0) continue;
-    if (j == 0 || h->motion[j] != h->motion[j - 1]) TLEDMotionOf(&motions[h->motion[j]], X, what, u);
+    if (j == 0 || h->motion[j] != h->motion[j - 1]) RigidMotionOf(&motions[h->motion[j]], X, what, u);
     const double s = Dot3(&h->normal[3*j], u);
     for (int k = 0; k < 3; k++) value[k] += s*h->dual[3*j + k];
   }

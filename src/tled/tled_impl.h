@@ -148,7 +148,7 @@ typedef struct {
 typedef struct {
   PetscInt        n;
   TLEDConstraint *item;
-  TLEDMotion     *now, *next; /* n: of the moving ones, at the end of a substep and of the one after */
+  RigidMotion     *now, *next; /* n: of the moving ones, at the end of a substep and of the one after */
   PetscInt        n_held;
   int            *held_of;    /* n_nodes: place in `held`, -1 for a free node                        */
   TLEDHeld       *held;       /* n_held                                                              */
@@ -330,7 +330,7 @@ PetscErrorCode TLEDCriticalStep_Private(TLED tled, const PetscReal u[], PetscInt
 PetscErrorCode TLEDConstraintsFromOptions_Private(TLED tled);
 PetscErrorCode TLEDConstraintsSetUp_Private(TLED tled);
 PetscErrorCode TLEDConstraintsDestroy_Private(TLEDConstraints *constraints);
-void           TLEDMotionsAt_Private(const TLEDConstraints *constraints, PetscReal t, TLEDMotion motions[]);
+void           TLEDMotionsAt_Private(const TLEDConstraints *constraints, PetscReal t, RigidMotion motions[]);
 PetscErrorCode TLEDProject_Private(TLED tled, PetscReal x[]); /* x <- P x, n_nodes x 3 */
 /* held parts of displacement, velocity, acceleration at time t, n_nodes x 3, zero elsewhere; each may be NULL */
 PetscErrorCode TLEDPrescribed_Private(TLED tled, PetscReal t, PetscReal u[], PetscReal v[], PetscReal a[]);

@@ -98,7 +98,7 @@ static void OpenHeld(TLED tled, const Work *w, int a, const double force[3], con
   const TLEDHeld *h = &tled->constraints.held[tled->constraints.held_of[a]];
   double          target[3];
 
-  TLEDHeldPart(h, tled->constraints.next, &tled->mesh.X[3 * a], TLED_MOTION_DISPLACEMENT, target);
+  TLEDHeldPart(h, tled->constraints.next, &tled->mesh.X[3 * a], MOTION_DISPLACEMENT, target);
   TLEDStepOpenHeld(&w->step, h->P, target, tled->mass[a], force, f_ext, u, v, sum);
 }
 
@@ -107,7 +107,7 @@ static void CloseHeld(TLED tled, const Work *w, int a, const double force[3], co
   const TLEDHeld *h = &tled->constraints.held[tled->constraints.held_of[a]];
   double          velocity[3];
 
-  TLEDHeldPart(h, tled->constraints.now, &tled->mesh.X[3 * a], TLED_MOTION_VELOCITY, velocity);
+  TLEDHeldPart(h, tled->constraints.now, &tled->mesh.X[3 * a], MOTION_VELOCITY, velocity);
   TLEDStepCloseHeld(&w->step, h->P, velocity, tled->mass[a], force, f_ext, v, sum);
 }
 
@@ -123,7 +123,7 @@ static void FollowCourses(TLED tled, const Work *w, PetscInt s)
   if (!c->moves && !tled->loads.n) return;
 #pragma omp single
   {
-    TLEDMotion *passed = c->now;
+    RigidMotion *passed = c->now;
     c->now             = c->next;
     c->next            = passed;
     if (c->moves) TLEDMotionsAt_Private(c, TimeAfter(w, s + 1), c->next);

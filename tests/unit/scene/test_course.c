@@ -42,6 +42,8 @@ static void Values_AreThoseOfTheFormulas(void **state)
   assert_true(At(&c, 0.0) == 1.0 && At(&c, 5.0) == 1.0);
   c = Make(COURSE_LINEAR, 1.0, 2.0, 0.0, 0.0);
   assert_true(At(&c, 0.5) == 0.0 && At(&c, 2.0) == 0.5 && At(&c, 5.0) == 2.0);
+  c = Make(COURSE_QUADRATIC, 1.0, 2.0, 0.0, 0.0);
+  assert_true(At(&c, 0.5) == 0.0 && At(&c, 2.0) == 0.25 && At(&c, 5.0) == 4.0);
   c = Make(COURSE_RAMP, 1.0, 2.0, 0.0, 0.0);
   assert_true(At(&c, 0.5) == 0.0 && At(&c, 3.0) == 1.0 && At(&c, 9.0) == 1.0);
   assert_close(At(&c, 2.0), 0.5, 1e-15, 1.0);
