@@ -189,7 +189,7 @@ PetscErrorCode CouplerUpdateContacts(Coupler c)
     c->contacts[k] = (SPHContacts){0};
     if (!s->proxy) continue;
     if (s->tled) PetscCall(TLEDGetPositions(s->tled, &x, &v));
-    if (s->tled || !s->placed) PetscCall(ProxyUpdate(s->proxy, x, s->tled ? s->mean_velocity : NULL));
+    if (s->tled || s->moves || !s->placed) PetscCall(ProxyUpdate(s->proxy, x, s->tled ? s->mean_velocity : s->v_nodes));
     s->placed = PETSC_TRUE;
     PetscCall(ProxyGetContacts(s->proxy, &c->contacts[k]));
     if (c->contacts[k].n_proxies > s->capacity) {
@@ -433,6 +433,7 @@ static PetscErrorCode CoupledStep(Coupler c, PetscReal dt)
   const PetscInt passes = c->compliant ? c->params.passes : 1;
 
   PetscFunctionBegin;
+  PetscCall(CouplerMoveObstacles(c, dt));
   PetscCall(CouplerUpdateContacts(c));
   PetscCall(CouplerTimer(c, PHASE_PROXIES));
   for (PetscInt k = 0; k < c->n_bodies; k++) {
@@ -462,6 +463,7 @@ static PetscErrorCode CoupledStep(Coupler c, PetscReal dt)
   PetscCall(SPHKick(c->sph, dt));
   PetscCall(CouplerTimer(c, PHASE_PRESSURE));
   PetscCall(CouplerStop(c, dt));
+  PetscCall(CouplerArriveObstacles(c, dt));
   PetscCall(CouplerTimer(c, PHASE_TRANSFER));
   ByCall(SPHDrift(c->sph, dt));
   PetscCall(CouplerTimer(c, PHASE_PRESSURE));
@@ -498,6 +500,7 @@ PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
     ByCall(SPHUpdateNeighbors(c->sph));
     PetscCall(CouplerTimer(c, PHASE_NEIGHBOURS));
     PetscCall(SPHGetTimeStep(c->sph, &dt_fluid));
+    PetscCall(CouplerLimitStep(c, &dt_fluid));
     /* two equal steps rather than a full and a tiny one before an output */
     if (dt_max < 2.0 * dt_fluid && dt_max > dt_fluid) *dt = 0.5 * dt_max;
     else *dt = PetscMin(dt_max, dt_fluid);
@@ -598,9 +601,13 @@ PetscErrorCode CouplerDestroy(Coupler *coupler)
     PetscCall(TLEDDestroy(&s->tled));
     PetscCall(CouplerResponseDestroy(&s->response));
     PetscCall(PetscFree2(s->x, s->triangles));
+    PetscCall(PetscFree3(s->x_rest, s->x_next, s->v_nodes));
+    PetscCall(MotionDestroy(&s->motion));
     PetscCall(PetscFree5(s->force, s->start, s->mean_velocity, s->wall_velocity, s->answer));
     PetscCall(PetscFree2(s->proxy_force, s->proxy_work));
   }
+  for (PetscInt k = 0; k < c->n_wall_motions; k++) PetscCall(MotionDestroy(&c->wall_motion[k]));
+  PetscCall(MotionDestroy(&c->frame));
   PetscCall(PetscHeaderDestroy(coupler));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

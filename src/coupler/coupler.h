@@ -31,7 +31,7 @@ typedef struct {
 
 typedef struct {
   PetscReal min[3], max[3];
-  Names     walls, periodic;
+  Names     walls, periodic, slip, moving;
 } DomainParams;
 
 typedef struct {
@@ -56,7 +56,18 @@ typedef struct {
 typedef struct {
   char      surface[PETSC_MAX_PATH_LEN];
   PetscReal scale, translate[3];
+  PetscBool slip;
 } ObstacleParams;
+
+typedef struct {
+  Names        walls;
+  PetscReal    translation[3];
+  CourseParams course;
+} WallMotionParams;
+
+typedef struct {
+  MotionParams motion;
+} MotionSection;
 
 typedef struct {
   int       scheme;         /* CouplerScheme                                                          */
@@ -97,7 +108,7 @@ typedef struct {
 } VerifyParams;
 
 BY_EXTERN const SceneSection CouplerSchema[];
-BY_EXTERN const Key          RunKeys[], DomainKeys[], TopKeys[], FillKeys[], ObstacleKeys[], CouplerKeys[], ProbeKeys[], VerifyKeys[];
+BY_EXTERN const Key          RunKeys[], DomainKeys[], TopKeys[], FillKeys[], ObstacleKeys[], WallMotionKeys[], MotionKeys[], CouplerKeys[], ProbeKeys[], VerifyKeys[];
 
 /* the program's commands: run a scene into its directory (resume: directory of an earlier run, or NULL), or print the plan */
 BY_EXTERN PetscErrorCode CouplerRun(Scene scene, const char resume[]);
@@ -113,6 +124,7 @@ BY_EXTERN PetscErrorCode CouplerSetFluid(Coupler coupler, SPH sph);
 BY_EXTERN PetscErrorCode CouplerAddBody(Coupler coupler, const char name[], TLED tled, Proxy proxy); /* proxy NULL: dry body */
 BY_EXTERN PetscErrorCode CouplerAddObstacle(Coupler coupler, const char name[], Proxy proxy, PetscInt n_nodes, const PetscReal x[],
                                             PetscInt n_triangles, const PetscInt triangles[]);
+BY_EXTERN PetscErrorCode CouplerSetObstacleMotion(Coupler coupler, PetscInt obstacle, const Motion *motion); /* taken over */
 BY_EXTERN PetscErrorCode CouplerSetFromOptions(Coupler coupler);
 BY_EXTERN PetscErrorCode CouplerSetUp(Coupler coupler);
 BY_EXTERN PetscErrorCode CouplerStep(Coupler coupler, PetscReal dt_max, PetscReal *dt);
@@ -136,6 +148,7 @@ typedef struct {
   PetscReal compression_mean, compression_max; /* of the fluid                                               */
   PetscReal speed_max, speed_rms;              /* of the fluid                                               */
   PetscReal solid_volume;
+  PetscReal work_motion;                       /* on the fluid since the start, by walls, obstacles and a tank that move [J] */
   PetscReal solid_contact_energy, solid_external_work; /* stored in contact; done by fluid, loads and supports since the start */
 } CouplerLedger;
 BY_EXTERN PetscErrorCode CouplerGetLedger(Coupler coupler, CouplerLedger *ledger);

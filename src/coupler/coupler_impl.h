@@ -28,6 +28,10 @@ typedef struct {
   PetscReal      *x;             /* n x 3 positions of an obstacle; NULL for a body                        */
   PetscBool       answers;       /* this step: scheme `mass`, and water touches it                         */
   PetscBool       placed;        /* an obstacle's proxies are placed once                                   */
+  PetscBool       slip, moves;   /* an obstacle along which fluid slips, one that moves                    */
+  Motion          motion;
+  PetscReal      *x_rest, *x_next, *v_nodes; /* n x 3, of one that moves: before its motion, at the end of the step [m]; mean velocity [m/s] */
+  PetscReal       power;         /* [W] of the fluid on an obstacle that moves, last step                  */
   PetscInt       *triangles;     /* of an obstacle                                                         */
   PetscInt        n_triangles;
   PetscReal      *force;         /* n x 3 [N] forces of the fluid on the nodes, last step                  */
@@ -72,6 +76,8 @@ struct _p_Coupler {
   PetscInt       n_probes;
   CouplerProbe   probe[BY_NAMES_MAX];
   PetscReal      gravity[3];
+  PetscInt       n_wall_motions;
+  Motion         wall_motion[6], frame;
   PetscBool      setup, compliant; /* compliant: scheme `mass` in use             */
   PetscReal      time, dt, mass;   /* mass of a particle [kg]                      */
   PetscReal      rest_density;
@@ -83,6 +89,14 @@ struct _p_Coupler {
 
 /* coupler_scene.c */
 PETSC_INTERN PetscErrorCode CouplerSetBodiesFromOptions(Coupler coupler);
+/* coupler_motion.c */
+PETSC_INTERN PetscErrorCode CouplerMoveDomain(Coupler coupler, const DomainParams *domain);
+PETSC_INTERN PetscErrorCode CouplerRefuseMoving(const char key[], const char with[], const DomainParams *domain);
+PETSC_INTERN PetscErrorCode CouplerReadObstacleMotion(Coupler coupler, PetscInt obstacle, PetscBool slip);
+PETSC_INTERN PetscErrorCode CouplerPlaceObstacles(Coupler coupler);
+PETSC_INTERN PetscErrorCode CouplerMoveObstacles(Coupler coupler, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerArriveObstacles(Coupler coupler, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerLimitStep(Coupler coupler, PetscReal *dt);
 /* coupler_fill.c */
 PETSC_INTERN PetscErrorCode CouplerBuildFluid(Coupler coupler, const DomainParams *domain);
 /* scheme_mass.c */

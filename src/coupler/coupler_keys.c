@@ -28,12 +28,22 @@ const Key DomainKeys[] = {
   {"max",      KEY_VEC3,  ROW(DomainParams, max),      "m", NULL, -HUGE_LENGTH, HUGE_LENGTH, KEY_REQUIRED, NULL, "upper corner of the domain"},
   {"walls",    KEY_NAMES, ROW(DomainParams, walls),    "",  "",   0, 0, 0, wall_names, "sides that are walls"},
   {"periodic", KEY_NAMES, ROW(DomainParams, periodic), "",  "",   0, 0, 0, axis_names, "directions in which the domain repeats"},
+  {"slip",     KEY_NAMES, ROW(DomainParams, slip),     "",  "",   0, 0, 0, wall_names, "walls along which a viscous fluid slips freely"},
+  {"moving",   KEY_NAMES, ROW(DomainParams, moving),   "",  "",   0, 0, 0, NULL, "names of motions of walls, each a section domain.<name>"},
   KEY_END};
+
+const Key WallMotionKeys[] = {
+  {"walls",       KEY_NAMES, ROW(WallMotionParams, walls),       "",  "", 0, 0, KEY_REQUIRED, wall_names, "walls that move, of domain.walls"},
+  {"translation", KEY_VEC3,  ROW(WallMotionParams, translation), "m", "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, KEY_REQUIRED, NULL, "displacement where the course is 1; in the wall's plane it drags what does not slip"},
+  COURSE_KEYS(WallMotionParams, course),
+  KEY_END};
+
+const Key MotionKeys[] = {MOTION_KEYS(MotionSection, motion), KEY_END};
 
 const Key TopKeys[] = {
   {"gravity",   KEY_VEC3,  ROW(TopParams, gravity),   "m/s^2", "0,0,0", -1e4, 1e4, 0, NULL, "acceleration of gravity"},
   {"bodies",    KEY_NAMES, ROW(TopParams, bodies),    "",      "", 0, 0, 0, NULL, "elastic bodies, a section each"},
-  {"obstacles", KEY_NAMES, ROW(TopParams, obstacles), "",      "", 0, 0, 0, NULL, "rigid obstacles at rest, a section each"},
+  {"obstacles", KEY_NAMES, ROW(TopParams, obstacles), "",      "", 0, 0, 0, NULL, "rigid obstacles, at rest or moving, a section each"},
   {"probes",    KEY_NAMES, ROW(TopParams, probes),    "",      "", 0, 0, 0, NULL, "gauges written to probes.csv, a section each"},
   KEY_END};
 
@@ -59,6 +69,7 @@ const Key ObstacleKeys[] = {
   {"surface",   KEY_FILE, ROW(ObstacleParams, surface),   "",  NULL, 0, 0, KEY_REQUIRED, NULL, "closed surface: stl, off, obj, ply or msh"},
   {"scale",     KEY_REAL, ROW(ObstacleParams, scale),     "1", "1", 0, 1e6, KEY_LO_OPEN, NULL, "factor on the surface's coordinates"},
   {"translate", KEY_VEC3, ROW(ObstacleParams, translate), "m", "0,0,0", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "shift of the surface, after scaling"},
+  {"slip",      KEY_BOOL, ROW(ObstacleParams, slip),      "",  "false", 0, 0, 0, NULL, "a viscous fluid slips freely along it"},
   KEY_END};
 
 const Key CouplerKeys[] = {
@@ -103,6 +114,8 @@ const SceneSection CouplerSchema[] = {
   {"",         TopKeys,      NULL,       NULL,        "top level"},
   {"run",      RunKeys,      NULL,       NULL,        "the run and its directory"},
   {"domain",   DomainKeys,   NULL,       NULL,        "box in which everything happens"},
+  {"moving",   WallMotionKeys, "domain", "moving",    "walls of the domain that move"},
+  {"frame",    MotionKeys,   NULL,       NULL,        "motion of the whole tank: results are as seen from it, gravity is the laboratory's"},
   {"sph",      SPHKeys,      NULL,       NULL,        "the fluid"},
   {"fill",     FillKeys,     "sph",      "fill",      "water at the start: a box, sphere or cylinder, or the inside of a surface"},
   {"body",     TLEDKeys,     NULL,       "bodies",    "an elastic body"},
@@ -111,7 +124,8 @@ const SceneSection CouplerSchema[] = {
   {"load",     TLEDLoadKeys, "body",     "loads",     "a load on a body"},
   {"implicit", TLEDImplicitKeys, "body", NULL,        "the implicit solver of a body (byssus verify)"},
   {"proxy",    ProxyKeys,    "body",     NULL,        "surface proxies of a body"},
-  {"obstacle", ObstacleKeys, NULL,       "obstacles", "a rigid obstacle at rest"},
+  {"obstacle", ObstacleKeys, NULL,       "obstacles", "a rigid obstacle"},
+  {"motion",   MotionKeys,   "obstacle", NULL,        "motion of an obstacle"},
   {"proxy",    ProxyKeys,    "obstacle", NULL,        "surface proxies of an obstacle"},
   {"coupler",  CouplerKeys,  NULL,       NULL,        "the staggered loop"},
   {"probe",    ProbeKeys,    NULL,       "probes",    "a gauge"},

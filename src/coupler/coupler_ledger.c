@@ -64,6 +64,7 @@ PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
     l->compression_max    = f.compression_max;
     l->speed_max          = f.speed_max;
     l->speed_rms          = f.speed_rms;
+    l->work_motion        = f.wall_work + f.frame_work;
     for (int i = 0; i < 3; i++) {
       l->momentum[i] = f.momentum[i];
       l->angular[i]  = f.angular[i];
@@ -76,6 +77,7 @@ PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
     l->proxies += c->contacts[k].n_proxies;
     l->work_fluid += s->work_fluid;
     l->work_solid += s->work_solid;
+    if (s->moves) l->work_motion -= s->work_fluid;
     if (!s->tled) continue;
     PetscCall(TLEDGetStats(s->tled, &b));
     l->substeps = PetscMax(l->substeps, s->substeps);

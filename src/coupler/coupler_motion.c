@@ -122,7 +122,7 @@ PetscErrorCode CouplerRefuseMoving(const char key[], const char with[], const Do
   CouplerSetObstacleMotion - let an obstacle move as a rigid body
 
   Input Parameters:
-+ coupler  - the coupler
++ c        - the coupler
 . obstacle - its number, counting bodies first
 - motion   - taken over; it is destroyed with the coupler
 
@@ -203,6 +203,7 @@ PetscErrorCode CouplerMoveObstacles(Coupler c, PetscReal dt)
     if (!s->moves) continue;
     PlacedAt(s, c->time, s->x);
     PlacedAt(s, c->time + dt, s->x_next);
+    s->power = 0.0;
     for (PetscInt i = 0; i < 3 * s->n_nodes; i++) s->v_nodes[i] = (s->x_next[i] - s->x[i]) / dt;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,7 +11,7 @@ static const char *const ledger_headers[] = {
   "solid_potential [J]", "solid_damping_loss [J]", "work_fluid [J]", "work_solid [J]", "momentum_x [kg m/s]", "momentum_y [kg m/s]",
   "momentum_z [kg m/s]", "angular_x [kg m^2/s]", "angular_y [kg m^2/s]", "angular_z [kg m^2/s]", "fluid_speed_max [m/s]",
   "fluid_speed_rms [m/s]", "solid_volume [m^3]",
-  "solid_contact_energy [J]", "solid_external_work [J]"};
+  "solid_contact_energy [J]", "solid_external_work [J]", "work_motion [J]"};
 
 enum { N_LEDGER = sizeof(ledger_headers) / sizeof(ledger_headers[0]) };
 
@@ -74,7 +74,7 @@ static PetscErrorCode WriteLedger(Coupler c, CouplerResults *r)
                                    l.fluid_viscous_loss, l.solid_kinetic, l.solid_strain, l.solid_potential, l.solid_damping_loss, l.work_fluid,
                                    l.work_solid, l.momentum[0], l.momentum[1], l.momentum[2], l.angular[0], l.angular[1], l.angular[2],
                                    l.speed_max, l.speed_rms, l.solid_volume, l.solid_contact_energy,
-                                   l.solid_external_work};
+                                   l.solid_external_work, l.work_motion};
   ByCall(TableWrite(r->ledger, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -94,7 +94,7 @@ static PetscErrorCode WriteBody(Coupler c, CouplerResults *r, PetscInt k)
     const OutputField fields[] = {{"displacement", "m", 3, u}, {"velocity", "m/s", 3, v}, {"force", "N", 3, s->force}};
     ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, x, 3, fields));
     PetscCall(VecRestoreArrayRead(U, &u));
-  } else if (!r->n_series) ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, s->x, 0, NULL));
+  } else if (s->moves || !r->n_series) ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, s->x, 0, NULL));
   if (r->proxies[k]) {
     const PetscReal *x, *normal, *kappa, *area;
     PetscInt         n;

@@ -96,7 +96,7 @@ static PetscErrorCode DampMesh(TLED tled, const char name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadObstacle(const char name[], Surface *surface)
+static PetscErrorCode ReadObstacle(const char name[], Surface *surface, PetscBool *slip)
 {
   ObstacleParams params;
   char           prefix[2 * BY_NAME_MAX], key[2 * BY_NAME_MAX];
@@ -105,6 +105,7 @@ static PetscErrorCode ReadObstacle(const char name[], Surface *surface)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(KeysSetDefaults(ObstacleKeys, &params));
   PetscCall(KeysSetFromOptions(ObstacleKeys, prefix, &params));
+  if (slip) *slip = params.slip;
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.surface", name));
   ByCall(SurfaceRead(key, params.surface, params.scale, params.translate, surface));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,10 +137,11 @@ static PetscErrorCode AddContacts(TLED tled, const char name[], const DomainPara
   for (PetscInt i = 0; i < params->contact.n; i++) {
     const char *with = params->contact.name[i];
 
+    ByCall(CouplerRefuseMoving(key, with, domain));
     if (HasName(&top.obstacles, with)) {
       Surface surface;
 
-      ByCall(ReadObstacle(with, &surface));
+      ByCall(ReadObstacle(with, &surface, NULL));
       PetscCall(TLEDAddContactSurface(tled, with, &surface));
       PetscCall(SurfaceDestroy(&surface));
     } else if (HasName(&domain->walls, with)) {
@@ -224,11 +226,12 @@ static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainPa
   Surface        surface;
   Proxy          proxy = NULL;
   SPHParams     *fluid;
+  PetscBool      slip;
   char           key[2 * BY_NAME_MAX];
   PetscErrorCode ierr;
 
   PetscFunctionBegin;
-  ByCall(ReadObstacle(name, &surface));
+  ByCall(ReadObstacle(name, &surface, &slip));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.surface", name));
   PetscCall(SPHGetParams(c->sph, &fluid));
   ierr = CheckInside(key, domain, fluid->spacing, surface.n_nodes, surface.x);
@@ -240,6 +243,7 @@ static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainPa
   else PetscCall(ProxyDestroy(&proxy));
   PetscCall(SurfaceDestroy(&surface));
   ByCall(ierr);
+  ByCall(CouplerReadObstacleMotion(c, c->n_surfaces - 1, slip));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -365,6 +369,7 @@ PetscErrorCode CouplerSetFromOptions(Coupler c)
     const PetscErrorCode ierr = BuildObstacle(c, top.obstacles.name[k], &domain);
     if (ierr != BY_ERR_INPUT) PetscCall(ierr);
   }
+  if (has_fluid) ByCall(CouplerMoveDomain(c, &domain));
   if (InputErrorCount()) PetscFunctionReturn(BY_ERR_INPUT);
   if (has_fluid) ByCall(CouplerBuildFluid(c, &domain));
   ByCall(CouplerAddProbes(c, &top.probes));

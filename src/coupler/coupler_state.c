@@ -40,6 +40,40 @@ static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* an obstacle that moves: where it is the clock tells; how it was sampled, and the work done on it */
+static PetscErrorCode SaveObstacle(Checkpoint file, CouplerSurface *s)
+{
+  const PetscReal *values, sums[3] = {s->work_fluid, s->work_solid, s->n_proxies_sum};
+  char             name[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(ProxyGetSampling(s->proxy, &values));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sampling", s->name));
+  ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, values));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
+  ByCall(CheckpointWriteReal(file, name, 3, sums));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadObstacle(Checkpoint file, CouplerSurface *s)
+{
+  PetscReal *values, sums[3];
+  char       name[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(3 * s->n_nodes, &values));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sampling", s->name));
+  ByCall(CheckpointReadReal(file, name, 3 * s->n_nodes, values));
+  PetscCall(ProxySetSampling(s->proxy, values));
+  PetscCall(PetscFree(values));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
+  ByCall(CheckpointReadReal(file, name, 3, sums));
+  s->work_fluid    = sums[0];
+  s->work_solid    = sums[1];
+  s->n_proxies_sum = sums[2];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
 {
   Vec         vec[3];
@@ -112,6 +146,8 @@ PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[]
     ByCall(CheckpointWriteReal(file, "fluid/internals", SPH_INTERNALS, internals));
   }
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(SaveBody(file, &c->surface[k]));
+  for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++)
+    if (c->surface[k].moves) ByCall(SaveObstacle(file, &c->surface[k]));
   ByCall(CheckpointCommit(&file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -150,6 +186,9 @@ PetscErrorCode CouplerLoad(Coupler c, const char directory[])
   c->iterations_sum = clock[2];
   if (c->sph) ByCall(LoadFluid(c, file));
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(LoadBody(file, &c->surface[k]));
+  for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++)
+    if (c->surface[k].moves) ByCall(LoadObstacle(file, &c->surface[k]));
+  PetscCall(CouplerPlaceObstacles(c));
   PetscCall(CheckpointClose(&file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

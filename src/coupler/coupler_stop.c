@@ -27,7 +27,7 @@ static PetscErrorCode FindNear(Coupler c, PetscInt k, PetscReal dt, Near *near)
 
   PetscFunctionBegin;
   near->n           = q->n_touched;
-  near->x           = s->x;
+  near->x           = s->moves ? s->x_next : s->x;
   near->triangles   = s->triangles;
   near->n_triangles = s->n_triangles;
   if (s->tled) {
@@ -84,12 +84,13 @@ static void Outward(const Near *near, PetscInt t, PetscReal sign, PetscReal norm
 }
 
 /* Impulse of a plastic impact of particle t with its triangle along the normal [N s]: takes the approaching relative speed away and gives
-   the nodes their part, which move in their free directions P n only; v are the nodes' velocities. */
+   the nodes their part, which move in their free directions P n only; v are the nodes' velocities. An obstacle that
+   moves has any mass. */
 static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscReal particle_mass, const PetscReal vi[3], const PetscReal normal[3],
-                        const PetscReal mass[], PetscReal v[])
+                        const PetscReal mass[], PetscReal v[], PetscReal dt)
 {
   const PetscInt *node    = &near->triangles[3 * near->triangle[t]];
-  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), work = 0.0, way[3][3], J;
+  PetscReal       inverse = 1.0 / particle_mass, speed = Dot3(vi, normal), wall = 0.0, work = 0.0, way[3][3], J;
 
   for (int a = 0; s->tled && a < 3; a++) {
     const PetscReal  w = near->weights[3 * t + a];
@@ -100,7 +101,10 @@ static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscRe
     speed -= w * Dot3(&v[3 * node[a]], normal);
     inverse += w * w / mass[node[a]] * Dot3(way[a], normal);
   }
+  for (int a = 0; s->moves && a < 3; a++) wall += near->weights[3 * t + a] * Dot3(&s->v_nodes[3 * node[a]], normal);
+  speed -= wall;
   J = PetscMax(0.0, -speed / inverse);
+  s->power -= J * wall / dt;
   for (int a = 0; s->tled && a < 3; a++) {
     for (int i = 0; i < 3; i++) {
       const PetscReal gain = -J * near->weights[3 * t + a] / mass[node[a]] * way[a][i];
@@ -134,7 +138,7 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
     if (near->triangle[t] < 0 || gap >= stop) continue;
     Outward(near, t, gap < 0.0 ? -1.0 : 1.0, normal);
     for (int i = 0; i < 3; i++) vi[i] = v[3 * q->particle[t] + i];
-    J = Impact(s, near, t, c->mass, vi, normal, mass, v_nodes);
+    J = Impact(s, near, t, c->mass, vi, normal, mass, v_nodes, dt);
     for (int i = 0; i < 3; i++) {
       change[i] = J / c->mass * normal[i];
       shift[i]  = PetscMax(0.0, stop - gap - dt * J / c->mass) * normal[i];
