@@ -272,7 +272,7 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
     ImageShift(&p->fluid, base, p->cells.entry[e]%27, shift);
     for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
     if (OutOfReach(&p->reach[i], r)) continue;
-    if (!ProxyPairHalfSpace(p->fluid.kernel, p->fluid.h, b, r, &touch[n].pair) || !(touch[n].pair.w > 0.0)) continue;
+    if (!ProxyPairHalfSpace(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, &touch[n].pair) || !(touch[n].pair.w > 0.0)) continue;
     const PetscInt patch = p->surface.patch[p->sampling.triangle[i]];
     while (slot < *n_slots && slots[slot] != patch) slot++;
     if (slot == PROXY_PATCHES) continue;
@@ -366,7 +366,7 @@ static int ParticleEllipsoid(Chunk *c, const Proxy p, PetscInt particle, const d
     ImageShift(&p->fluid, base, p->cells.entry[e]%27, shift);
     for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
     if (OutOfReach(&p->reach[i], r)) continue;
-    const double part = ProxyPairEllipsoid(p->fluid.kernel, p->fluid.h, b, r, grad[n]);
+    const double part = ProxyPairEllipsoid(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, grad[n]);
     if (part == 0.0) continue;
     phi += part;
     touch[n].pair.w = part;

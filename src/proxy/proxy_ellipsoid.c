@@ -30,7 +30,7 @@ PetscErrorCode ProxyEllipsoidVolumes(int kernel, double h, double factor, PetscI
           for (PetscInt j = grid.head[(z*grid.dims[1] + y)*grid.dims[0] + w]; j >= 0; j = grid.next[j]) {
             double r[3];
             Sub3(&x[3*j], &x[3*i], r);
-            sum += ProxyEllipsoidW(kernel, h, &points[i], r, NULL);
+            sum += ProxyEllipsoidW(kernel, kernel, h, &points[i], r, NULL);
           }
         }
       }

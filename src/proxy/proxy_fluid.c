@@ -28,6 +28,7 @@ PetscErrorCode ProxySetFluid(Proxy proxy, SPH sph)
   fluid.h      = params->support*params->spacing;
   fluid.dx     = params->spacing;
   fluid.kernel = params->kernel;
+  fluid.gradient_kernel = SPHGradientKernel(params);
   PetscCall(SPHGetDomain(sph, fluid.min, fluid.max, &walls, &fluid.periodic));
   PetscCall(ProxySetFluidScale(proxy, &fluid));
   proxy->sph = sph;

@@ -12,7 +12,7 @@
 /* what the proxies must know of the fluid */
 typedef struct {
   double   h, dx;          /* support radius, spacing [m]                                                  */
-  int      kernel;         /* SPHKernelType                                                                */
+  int      kernel, gradient_kernel; /* SPHKernelType of density, of gradients                              */
   double   min[3], max[3]; /* domain [m]: period along the periodic axes                                   */
   unsigned periodic;       /* bit k = axis k                                                               */
 } ProxyFluid;

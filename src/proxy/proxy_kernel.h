@@ -59,6 +59,8 @@ BY_HD double ProxyPlaneMoment(int kernel, double d, double h)
 
   if (q >= 1.0) return 0.0;
   if (kernel == SPH_WENDLAND) return u5*u * (7.0 - u * (15.0 - u * (10.875 - u * (8.0/3.0)))) / h;
+  if (kernel == SPH_POLY6) return 63.0/256.0 * (1.0 - q2)*(1.0 - q2)*(1.0 - q2)*(1.0 - q2)*(1.0 - q2) / h;
+  if (kernel == SPH_SPIKY) return u5 * (3.0 - u * (4.5 - u * (12.0/7.0))) / h;
   if (q >= 0.5) return u5 * (3.2 - u * (4.8 - u * (64.0/35.0))) / h;
   return (31.0/140.0 - q2 * (1.4 - q2 * (4.0 - q2 * (8.0 - q * (38.4/7.0))))) / h;
 }
@@ -174,8 +176,8 @@ BY_HD double ProxyBeyond(const ProxyPoint *b, const double t[3], double grad[3])
    in the ball (integrate 2 pi r^2 W (1 - (D^2 + r^2 - 1/H^2)/(2 D r)) over r, D = 1/H + z); the method's H is its first order.
    Three fades make the weights local: behind the surface; past the equator of the osculating ball; and where the part of the surface
    that the proxy stands for is h away. On a plane they all cancel, whatever they are. All gradients exact. Returns 0 when the pair does
-   not touch. */
-BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const double r[3], ProxyPair *pair)
+   not touch. The slope of lambda is that of `gradient_kernel`, as at planes. */
+BY_HD int ProxyPairHalfSpace(int kernel, int gradient_kernel, double h, const ProxyPoint *b, const double r[3], ProxyPair *pair)
 {
   const double z0 = Dot3(b->n, r), R = b->radius[0], H = 0.5*(b->S[0] + b->S[1] + b->S[2]);
   const double t[3] = {r[0] - z0*b->n[0], r[1] - z0*b->n[1], r[2] - z0*b->n[2]}, t2 = Dot3(t, t);
@@ -202,7 +204,7 @@ BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const do
   pair->cover  = A*w*near_side;
   pair->w      = A*w*near_side*behind*end;
   pair->lambda = SPHHalfSpace(kernel, z, h) - Hz*K;
-  slope        = -SPHPlaneDensity(kernel, d, h) * (1.0 - Hz*z) + K*Hz*bend*b->bend;
+  slope        = -SPHPlaneDensity(gradient_kernel, d, h) * (1.0 - Hz*z) + K*Hz*bend*b->bend;
   for (int k = 0; k < 3; k++) {
     const double side_k = F*near_side*t[k] + w*side_slope*b->n[k];
     pair->grad_lambda[k] = slope * pair->grad_z[k];
@@ -214,7 +216,7 @@ BY_HD int ProxyPairHalfSpace(int kernel, double h, const ProxyPoint *b, const do
 
 /* Ellipsoid kernel of one proxy (method 4.3) without volume and cut: h^3/(a b c) W(|G r|, h), G = diag(h/a, h/b, h/c), c = h, in the
    frame (e, n x e, n); gradient with respect to the particle when grad is not NULL. */
-BY_HD double ProxyEllipsoidW(int kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
+BY_HD double ProxyEllipsoidW(int kernel, int gradient_kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
 {
   double       m[3];
   Cross3(b->n, b->e, m);
@@ -224,18 +226,18 @@ BY_HD double ProxyEllipsoidW(int kernel, double h, const ProxyPoint *b, const do
   if (q2 >= h*h) return 0.0;
   const double d = sqrt(q2), scale = ga*gb;
   if (grad) {
-    const double F = scale * SPHKernelF(kernel, d, h);
+    const double F = scale * SPHKernelF(gradient_kernel, d, h);
     for (int k = 0; k < 3; k++) grad[k] = F * (ga*x*b->e[k] + gb*y*m[k] + z*b->n[k]);
   }
   return scale * SPHKernelW(kernel, d, h);
 }
 
 /* phi of one ellipsoid pair: V_b W_b(r) with a smooth end behind the surface: 1 for height z >= 0, 0 at z = -h/4 (one-sidedness) */
-BY_HD double ProxyPairEllipsoid(int kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
+BY_HD double ProxyPairEllipsoid(int kernel, int gradient_kernel, double h, const ProxyPoint *b, const double r[3], double grad[3])
 {
   double s[3], t[3], grad_z[3], W, cut, slope, z;
 
-  W = ProxyEllipsoidW(kernel, h, b, r, grad);
+  W = ProxyEllipsoidW(kernel, gradient_kernel, h, b, r, grad);
   if (W == 0.0) return 0.0;
   for (int k = 0; k < 3; k++) s[k] = r[k] - b->inset*b->n[k]; // from the surface
   const double z0 = Dot3(b->n, s);

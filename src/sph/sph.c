@@ -134,7 +134,7 @@ PetscErrorCode SPHSetParticleVolume(SPH sph, PetscReal volume)
 }
 
 /* sums of W and of |grad W|^2 over the points of a full cubic lattice of spacing dx around one of them */
-static void LatticeSums(int kernel, PetscReal dx, PetscReal h, PetscReal *W, PetscReal *grad2)
+static void LatticeSums(int kernel, int gradient_kernel, PetscReal dx, PetscReal h, PetscReal *W, PetscReal *grad2)
 {
   const int n = (int)ceil(h / dx);
 
@@ -144,7 +144,7 @@ static void LatticeSums(int kernel, PetscReal dx, PetscReal h, PetscReal *W, Pet
       for (int i = -n; i <= n; i++) {
         const PetscReal r = dx * sqrt((double)(i * i + j * j + k * k));
         *W += SPHKernelW(kernel, r, h);
-        *grad2 += PetscSqr(r * SPHKernelF(kernel, r, h));
+        *grad2 += PetscSqr(r * SPHKernelF(gradient_kernel, r, h));
       }
 }
 
@@ -162,9 +162,9 @@ static PetscReal AtSupport(const PetscReal table[7], PetscReal support)
    (tests/unit/sph/test_viscosity.c). */
 static PetscReal ViscosityPart(int form, int kernel, PetscReal support)
 {
-  static const PetscReal part[2][2][7] = {
-    {{0.768, 0.911, 0.960, 0.953, 0.954, 0.969, 0.968}, {0.692, 0.854, 0.933, 0.947, 0.942, 0.949, 0.957}},
-    {{0.361, 0.598, 0.783, 0.860, 0.895, 0.928, 0.946}, {0.273, 0.506, 0.711, 0.826, 0.872, 0.898, 0.920}}
+  static const PetscReal part[2][SPH_N_KERNELS][7] = {
+    {{0.768, 0.911, 0.960, 0.953, 0.954, 0.969, 0.968}, {0.692, 0.854, 0.933, 0.947, 0.942, 0.949, 0.957}, {0.912, 1.013, 1.001, 0.949, 0.954, 0.983, 0.977}, {0.720, 0.856, 0.913, 0.915, 0.924, 0.944, 0.949}},
+    {{0.361, 0.598, 0.783, 0.860, 0.895, 0.928, 0.946}, {0.273, 0.506, 0.711, 0.826, 0.872, 0.898, 0.920}, {0.494, 0.798, 0.952, 0.947, 0.937, 0.959, 0.966}, {0.334, 0.563, 0.739, 0.812, 0.849, 0.886, 0.906}}
   };
 
   return AtSupport(part[form][kernel], support);
@@ -226,11 +226,12 @@ PetscErrorCode SPHSetUp(SPH sph)
   sph->method = SPHFindSolver_Internal(par);
   if (!sph->method->Solve) PetscFunctionReturn(InputError("sph.solver", "%s is not in this version", sph->method->name));
   if (sph->params.tolerance == 0.0) sph->params.tolerance = sph->method->tolerance;
-  LatticeSums(par->kernel, par->spacing, sph->h, &W, &grad2);
+  sph->gradient_kernel = SPHGradientKernel(par);
+  LatticeSums(par->kernel, sph->gradient_kernel, par->spacing, sph->h, &W, &grad2);
   sph->mass        = par->density / W;
   if (sph->particle_volume > 0) sph->mass *= sph->particle_volume / PetscPowReal(par->spacing, 3);
   sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : SPHWallFactor(par->kernel, par->support);
-  sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, par->kernel, par->support);
+  sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, sph->gradient_kernel, par->support);
   sph->relax_time  = par->relax_time;
   if (sph->relax_time == 0.0 && sph->method->relaxes) {
     const PetscReal speed = PetscMax(sqrt(g * sph->h), Norm3(par->mean_velocity));
@@ -238,12 +239,14 @@ PetscErrorCode SPHSetUp(SPH sph)
   }
   sph->wall_flux   = 1.0;
   sph->shifting    = PetscMax(0.0, par->shifting);
-  sph->filter_norm = SPHFilterNorm(grad2 * sph->mass * sph->mass);
+  sph->prototype   = grad2 * sph->mass * sph->mass;
+  sph->filter_norm = SPHFilterNorm(sph->prototype);
   sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
 
   sph->table          = par->precision == SPH_PRECISION_DOUBLE ? &SPHLoopsOpenMPDouble : &SPHLoopsOpenMPSingle;
   sph->loops.n        = (int)sph->n;
   sph->loops.kernel   = par->kernel;
+  sph->loops.gradient_kernel = sph->gradient_kernel;
   sph->loops.h        = sph->h;
   sph->loops.mass     = sph->mass;
   sph->loops.capacity = 0;
@@ -270,6 +273,7 @@ PetscErrorCode SPHView(SPH sph, PetscViewer viewer)
   if (sph->setup) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "particles: %d of %g kg, support %g m\n", (int)sph->n, (double)sph->mass, (double)sph->h));
     PetscCall(PetscViewerASCIIPrintf(viewer, "solver in use: %s\n", sph->method->name));
+    if (sph->sound_speed > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "speed of sound in use: %g m/s\n", (double)sph->sound_speed));
     PetscCall(PetscViewerASCIIPrintf(viewer, "wall factor in use: %g, density relaxation time in use: %g s\n", (double)sph->wall_factor, (double)sph->relax_time));
     PetscCall(PetscViewerASCIIPrintf(viewer, "loops: %s\n", sph->table->name));
   }

@@ -17,7 +17,8 @@ typedef enum {
   SPH_SOLVER_PBF,          /* position-based fluids (sph_pbf.c)                                */
   SPH_SOLVER_WCSPH         /* weakly compressible: pressure from density (sph_wcsph.c)         */
 } SPHSolver;
-typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2 } SPHKernelType;
+typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2, SPH_KERNEL_POLY6, SPH_KERNEL_SPIKY } SPHKernelType;
+typedef enum { SPH_NORM_AUTO, SPH_NORM_MEAN, SPH_NORM_LARGEST } SPHNorm;
 typedef enum { SPH_VISCOUS_MORRIS, SPH_VISCOUS_MONAGHAN } SPHViscousForm;
 typedef enum { SPH_PRECISION_SINGLE, SPH_PRECISION_DOUBLE } SPHPrecision;
 
@@ -28,6 +29,11 @@ typedef struct {
   PetscReal viscosity;        /* mu [Pa s], 0 = inviscid: no viscous pass at all                         */
   PetscReal support;          /* h / dx, support radius over spacing                                     */
   PetscReal tolerance;        /* mean residual of the pressure solve over rho0; 0 = of the solver        */
+  int       tolerance_norm;   /* SPHNorm of the compression that pcisph, dfsph and pbf stop at           */
+  PetscReal gamma;            /* exponent of wcsph's equation of state, 1 = plain                        */
+  PetscReal sound_speed;      /* c [m/s] of wcsph; 0 = 10 sqrt(v0^2 + 2 g H)                             */
+  PetscReal stiffness;        /* k = c^2 [m^2/s^2] of p = k (rho - rho0); 0 = from the speed of sound    */
+  PetscReal artificial_viscosity; /* alpha of wcsph                                                      */
   PetscInt  max_iterations;   /* per step; reaching it is reported                                       */
   PetscReal cfl;              /* of 0.4                                                                  */
   PetscReal time_step;        /* fixed step [s]; 0 = adaptive                                            */
@@ -39,13 +45,17 @@ typedef struct {
   PetscReal mean_velocity[3]; /* target of the body-force controller [m/s]; 0 0 0 = no controller        */
   PetscBool free_surface;     /* clamp p >= 0                                                            */
   int       solver;           /* SPHSolver                                                               */
-  int       kernel;           /* SPHKernelType                                                           */
+  int       kernel;           /* SPHKernelType of density                                                */
+  int       gradient_kernel;  /* of every gradient, at pairs and walls: 0 = the same, else SPHKernelType + 1 */
   int       viscous_form;     /* SPHViscousForm                                                          */
   int       precision;        /* SPHPrecision of the pair loops; positions and velocities are kept in double */
   Names     fill;             /* names of blocks sph.<name>: read by the coupler's scene builder         */
 } SPHParams;
 
 BY_EXTERN const Key SPHKeys[];
+
+/* SPHKernelType that gradients are taken from */
+static inline int SPHGradientKernel(const SPHParams *params) { return params->gradient_kernel ? params->gradient_kernel - 1 : params->kernel; }
 
 /* What one surface (elastic body or obstacle) does to the particles within reach, made by src/proxy each step.
    phi is the part of the kernel's volume that lies in the body (method 2: lambda; 0 far away), grad its gradient with

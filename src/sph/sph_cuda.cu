@@ -25,7 +25,7 @@ static __global__ void Density(SPHDeviceList l, const double *x, double *density
       d[a] = (float)dx;
       r2 += d[a] * d[a];
     }
-    const float r = sqrtf(r2), f = SPHPairGradient(l.kernel, mass, r, h);
+    const float r = sqrtf(r2), f = SPHPairGradient(l.gradient_kernel, mass, r, h);
     for (int a = 0; a < 3; a++) l.gradient[3 * (size_t)k + a] = f * d[a];
     sum += (double)SPHPairDensity(l.kernel, mass, r, h);
   }

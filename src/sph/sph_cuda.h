@@ -8,7 +8,8 @@ extern "C" {
 #endif
 
 typedef struct {
-  int        n, kernel;         /* particles, SPHKernelType                  */
+  int        n;                 /* particles                                 */
+  int        kernel, gradient_kernel; /* SPHKernelType of density, of gradients */
   double     h, mass;           /* [m], [kg]                                 */
   double     period[3];         /* [m], 0 = not periodic                     */
   const int *start, *count;     /* n                                         */

@@ -40,6 +40,7 @@ typedef struct {
   PetscReal   tolerance;                                               /* what sph.tolerance 0 means; never 0                                      */
   PetscBool   relaxes;                                                 /* sph.relax_time 0 means 0.5 h/speed; else all at once                     */
   PetscBool   responds;                                                /* Solve takes op->response; else the coupler's walls are predicted alone   */
+  PetscBool   ignores_rate;                                            /* Solve does not read sph->rate: it is not computed                        */
   PetscErrorCode (*SetUp)(SPH sph);                                    /* end of SPHSetUp: check parameters, allocate sph->method_data; arrays of particles by SPHAddArray_Internal() */
   PetscErrorCode (*Destroy)(SPH sph);                                  /* free sph->method_data                                                         */
   PetscErrorCode (*LimitStep)(SPH sph, PetscReal *dt);                 /* lower the adaptive step [s]                                              */
@@ -107,6 +108,9 @@ struct _p_SPH {
   PetscReal wall_flux;               /* factor on rho0 grad phi in G: 1, or 2/s where images share the flux (sph_isph.c) */
   PetscReal shifting;                /* strength in use [1]                              */
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
+  int       gradient_kernel;         /* SPHKernelType                                    */
+  PetscReal prototype;               /* sum |m grad W|^2 over a full lattice [kg^2/m^8]  */
+  PetscReal sound_speed;             /* [m/s] of wcsph, else 0                           */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
@@ -181,6 +185,8 @@ PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
 /* force [N] of the pressure of particle i on plane k along the plane's axis */
 PETSC_INTERN PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k);
 PETSC_INTERN PetscReal SPHSurfaceDistance_Internal(SPH sph, const SPHContacts *contacts, PetscInt t);
+/* rho_i += density of the walls at positions x (n x 3, not wrapped) near those of the step, dt later */
+PETSC_INTERN void SPHAddWallDensity_Internal(SPH sph, PetscReal dt, const PetscReal x[], PetscReal rho[]);
 /* distance [m] of a position from plane k (0..5), positive inside; gradient +-1 along its axis in *sign */
 static inline PetscReal SPHPlaneDistance(SPH sph, int k, const PetscReal x[3], PetscReal *sign)
 {

@@ -2,7 +2,9 @@
 #include "sph.h"
 
 static const char *const Solvers[]    = {"auto", "iisph", "iisph_jacobi", "isph", "dfsph", "pcisph", "pbf", "wcsph", NULL};
-static const char *const Kernels[]    = {"cubic_spline", "wendland_c2", NULL};
+static const char *const Kernels[]    = {"cubic_spline", "wendland_c2", "poly6", "spiky", NULL};
+static const char *const Gradients[]  = {"same", "cubic_spline", "wendland_c2", "poly6", "spiky", NULL};
+static const char *const Norms[]      = {"auto", "mean", "largest", NULL};
 static const char *const Viscous[]    = {"morris", "monaghan", NULL};
 static const char *const Precisions[] = {"single", "double", NULL};
 
@@ -13,7 +15,13 @@ const Key SPHKeys[] = {
   {"density", KEY_REAL, FIELD(density), "kg/m^3", "1000", 0, 1e6, KEY_LO_OPEN, NULL, "rest density of the fluid"},
   {"viscosity", KEY_REAL, FIELD(viscosity), "Pa s", "0", 0, 1e6, 0, NULL, "dynamic viscosity; 0 = inviscid, walls slip"},
   {"support", KEY_REAL, FIELD(support), "1", "2", 1.5, 3, 0, NULL, "support radius of the kernel over spacing"},
-  {"tolerance", KEY_REAL, FIELD(tolerance), "1", "0", 0, 0.1, 0, NULL, "mean residual of the pressure solve over density (iisph_jacobi: mean compression); 0 = 1e-5, with iisph_jacobi 1e-3"},
+  {"tolerance", KEY_REAL, FIELD(tolerance), "1", "0", 0, 0.1, 0, NULL, "mean residual of the pressure solve over density (iisph_jacobi: mean compression); 0 = 1e-5, with iisph_jacobi 1e-3, pcisph 1e-2"},
+  {"tolerance_norm", KEY_CHOICE, FIELD(tolerance_norm), "", "auto", 0, 0, 0, Norms, "compression that tolerance bounds with pcisph, dfsph, pbf; auto = largest with pcisph, else mean"},
+  {"gamma", KEY_REAL, FIELD(gamma), "1", "7", 1, 10, 0, NULL, "wcsph: exponent of the equation of state; 1 = plain, p = c^2 (rho - rho0)"},
+  {"sound_speed", KEY_REAL, FIELD(sound_speed), "m/s", "0", 0, 1e4, 0, NULL,
+   "wcsph: speed of sound; 0 = 10 sqrt(v^2 + 2 g H), v the largest initial speed, H from the highest water to the domain's floor"},
+  {"stiffness", KEY_REAL, FIELD(stiffness), "m^2/s^2", "0", 0, 1e8, 0, NULL, "wcsph: k of p = k (rho - rho0), the square of the speed of sound; 0 = from sound_speed"},
+  {"artificial_viscosity", KEY_REAL, FIELD(artificial_viscosity), "1", "0.1", 0, 2, 0, NULL, "wcsph: alpha of Monaghan's artificial viscosity"},
   {"max_iterations", KEY_INT, FIELD(max_iterations), "1", "200", 1, 100000, 0, NULL, "operator applications in one pressure solve"},
   {"cfl", KEY_REAL, FIELD(cfl), "1", "0.4", 0, 1, KEY_LO_OPEN, NULL, "largest path of a particle in one step over spacing"},
   {"time_step", KEY_REAL, FIELD(time_step), "s", "0", 0, 1e3, 0, NULL, "fixed time step; 0 = adaptive"},
@@ -27,6 +35,7 @@ const Key SPHKeys[] = {
   {"free_surface", KEY_BOOL, FIELD(free_surface), "", "true", 0, 0, 0, NULL, "no negative pressure; false for a domain full of fluid"},
   {"solver", KEY_CHOICE, FIELD(solver), "", "auto", 0, 0, 0, Solvers, "pressure solver; auto = iisph with a free surface, isph without"},
   {"kernel", KEY_CHOICE, FIELD(kernel), "", "cubic_spline", 0, 0, 0, Kernels, "smoothing kernel"},
+  {"gradient_kernel", KEY_CHOICE, FIELD(gradient_kernel), "", "same", 0, 0, 0, Gradients, "kernel of all gradients, where it is not that of density (Mueller 2003: poly6 with spiky)"},
   {"viscous_form", KEY_CHOICE, FIELD(viscous_form), "", "morris", 0, 0, 0, Viscous, "form of viscosity: morris is the more accurate at walls, monaghan keeps angular momentum"},
   {"precision", KEY_CHOICE, FIELD(precision), "", "single", 0, 0, 0, Precisions, "of the pair loops; positions and velocities are kept in double"},
   {"fill", KEY_NAMES, FIELD(fill), "", "", 0, 0, 0, NULL, "names of the blocks of fluid, each a section sph.<name>"},

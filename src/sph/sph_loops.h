@@ -18,7 +18,8 @@ typedef struct {
 
 typedef struct {
   int           n;           /* particles                                                */
-  int           kernel;      /* SPHKernelType                                            */
+  int           kernel;      /* SPHKernelType of density                                 */
+  int           gradient_kernel; /* SPHKernelType of gradients                           */
   int           capacity;    /* slots per particle, on average over a chunk              */
   double        h, mass;     /* support [m], mass of a particle [kg]                     */
   SPHGrid       grid;
@@ -35,6 +36,9 @@ typedef struct {
   void         *wall;        /* real, 4 per particle: G_i [kg/m^4]                       */
 } SPHLoops;
 
+/* forms of the viscous pair loop: the first two as SPHViscousForm; Monaghan's between pairs that approach */
+enum { SPH_PAIRS_MORRIS, SPH_PAIRS_MONAGHAN, SPH_PAIRS_APPROACHING };
+
 /* A table of loops. Every entry must be filled; status 0 is success. */
 typedef struct {
   const char *name;
@@ -49,7 +53,7 @@ typedef struct {
   void (*GetVector)(const SPHLoops *l, double a[]);                              /* vector -> n x 3                      */
   void (*Rate)(const SPHLoops *l, double factor, const double scale[], double rate[]); /* factor scale D vector          */
   void (*Diagonal)(const SPHLoops *l, double diagonal[]);                        /* of D D^T                             */
-  void (*Viscosity)(const SPHLoops *l, int central, double mu_over_rho2, double a[]); /* a += viscous acceleration of vector */
+  void (*Viscosity)(const SPHLoops *l, int form, double mu_over_rho2, double a[]);  /* a += viscous acceleration of vector */
   void (*Filter)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum [(v_i - v_j) . g] g of vector */
   /* compact Laplacian and corrected gradients; distance: SPH_IMAGES per particle [m], >= h where there is no wall */
   void (*Compact)(const SPHLoops *l, const double distance[], double moments[], double trace[]); /* -> compact; sum c d d^T (6), its trace with images */

@@ -182,7 +182,7 @@ static double SumPairs(const SPHLoops *l, const double x[], int i, int at, int n
 #pragma omp simd
     for (int k = 0; k < whole; k++) {
       const real r = SQRT(d[0][k]*d[0][k] + d[1][k]*d[1][k] + d[2][k]*d[2][k]);
-      f[k] = SPHPairGradient(l->kernel, mass, r, h);
+      f[k] = SPHPairGradient(l->gradient_kernel, mass, r, h);
       w[k] = SPHPairDensity(l->kernel, mass, r, h);
     }
     for (int k = 0; gradient && k < m; k++)
@@ -344,8 +344,8 @@ static void Diagonal(const SPHLoops *l, double diagonal[])
   }
 }
 
-/* a_i += viscous acceleration, by Monaghan's form when `central`, else by Morris's */
-static void Viscosity(const SPHLoops *l, int central, double mu_over_rho2, double a[])
+/* a_i += viscous acceleration by a form of sph_loops.h */
+static void Viscosity(const SPHLoops *l, int form, double mu_over_rho2, double a[])
 {
   const real *v = (const real *)l->vector, *gradient = (const real *)l->gradient, h = (real)l->h, mu = (real)mu_over_rho2;
 
@@ -369,7 +369,8 @@ static void Viscosity(const SPHLoops *l, int central, double mu_over_rho2, doubl
           v_dot_x += v_ij[q] * (real)dx;
           x_dot_g += g[q] * (real)dx;
         }
-        if (central) sum += SPHPairViscosityMonaghan(mu, v_dot_x, r2, h) * Load4(g);
+        if (form == SPH_PAIRS_APPROACHING && v_dot_x > 0) v_dot_x = 0;
+        if (form != SPH_PAIRS_MORRIS) sum += SPHPairViscosityMonaghan(mu, v_dot_x, r2, h) * Load4(g);
         else sum += SPHPairViscosityMorris(mu, x_dot_g, r2, h) * v_ij;
       }
       for (int q = 0; q < 3; q++) a[3*i + q] += (double)sum[q];

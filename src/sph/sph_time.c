@@ -116,8 +116,10 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
   if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
   if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
   if (sph->method->Predict) PetscCall(sph->method->Predict(sph, dt));
-  sph->table->SetVelocity(&sph->loops, sph->v_star);
-  sph->table->Rate(&sph->loops, 1.0, NULL, sph->rate);
+  if (!sph->method->ignores_rate) {
+    sph->table->SetVelocity(&sph->loops, sph->v_star);
+    sph->table->Rate(&sph->loops, 1.0, NULL, sph->rate);
+  }
   PetscCall(PetscLogEventEnd(SPH_Predict, sph, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

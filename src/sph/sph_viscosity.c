@@ -28,7 +28,7 @@ PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(sph->accel, 3 * n));
   sph->table->SetVelocity(&sph->loops, sph->v);
-  sph->table->Viscosity(&sph->loops, sph->params.viscous_form == SPH_VISCOUS_MONAGHAN, sph->mu_pairs / (rho0 * rho0), sph->accel);
+  sph->table->Viscosity(&sph->loops, sph->params.viscous_form == SPH_VISCOUS_MONAGHAN ? SPH_PAIRS_MONAGHAN : SPH_PAIRS_MORRIS, sph->mu_pairs / (rho0 * rho0), sph->accel);
 
   // sum of k and of k v_wall; walls that move have given their part to v* before the division
 #pragma omp parallel for schedule(static)

@@ -21,7 +21,7 @@ static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal 
     if (d >= sph->h) continue;
     plane[n]    = k;
     phi[n]      = PetscMin(1.0, sph->wall_factor * SPHHalfSpace(sph->params.kernel, d, sph->h));
-    slope[n]    = sign * sph->wall_factor * SPHHalfSpaceSlope(sph->params.kernel, d, sph->h);
+    slope[n]    = sign * sph->wall_factor * SPHHalfSpaceSlope(sph->gradient_kernel, d, sph->h);
     distance[n] = d;
     n++;
   }
@@ -87,7 +87,7 @@ static PetscReal FromPlanes(SPH sph, int i, PetscReal drag[3], PetscReal *power)
   for (int k = 0; k < touched; k++) {
     const PetscReal *v = sph->plane_velocity + 3 * plane[k], c = OpenBut(touched, plane, phi, plane[k] / 2) * sph->open_surfaces[i];
 
-    rate += rho0 * c * slope[k] * v[plane[k] / 2];
+    rate += sph->wall_flux * rho0 * c * slope[k] * v[plane[k] / 2];
     if (!drag || sph->slip >> plane[k] & 1) continue;
     const PetscReal friction = SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
     for (int a = 0; a < 3; a++) {
@@ -257,6 +257,29 @@ PetscErrorCode SPHWallRate_Internal(SPH sph)
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  Density of the walls as predictor-corrector solvers need it, at positions x dt after those of the step: planes by closed form at x, surfaces
+  to first order in the path, and the walls' own motion as wall_rate tells it:
+    phi = 1 - open_planes(x) open_surfaces + sum_s c_s grad phi_s . (x - x0) - dt wall_rate/rho0,  never negative
+*/
+void SPHAddWallDensity_Internal(SPH sph, PetscReal dt, const PetscReal x[], PetscReal rho[])
+{
+  const int       n    = (int)sph->n;
+  const PetscReal rho0 = sph->params.density;
+
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++) {
+    int       plane[6];
+    PetscReal phi[6], slope[6], d[6], open = sph->open_surfaces[i], part;
+    const int touched = TouchedPlanes(sph, x + 3 * i, plane, phi, slope, d);
+
+    for (int k = 0; k < touched; k++) open *= 1.0 - phi[k];
+    part = rho0 * (1.0 - open) - dt * sph->wall_rate[i];
+    for (int k = 0; k < 3 && sph->n_surfaces; k++) part += (sph->G[3 * i + k] - sph->open_surfaces[i] * sph->G_planes[3 * i + k]) * (x[3 * i + k] - sph->x[3 * i + k]);
+    rho[i] += PetscMax(0.0, part);
+  }
 }
 
 /* force of pressure and friction on the six planes from the current positions, pressure and v* */

@@ -59,6 +59,7 @@ static void DevicePassesAreTheCPUs(void **state)
 
   list.n      = n;
   list.kernel = l->kernel;
+  list.gradient_kernel = l->gradient_kernel;
   list.h      = l->h;
   list.mass   = l->mass;
   for (int k = 0; k < 3; k++) list.period[k] = l->grid.period[k];

@@ -10,7 +10,7 @@ static void a_flat_wall_is_lambda_at_every_sampling(void **state)
     for (double eta = 1.0; eta > 0.3; eta -= 0.3) {
       for (int kernel = 0; kernel < 2; kernel++) {
         ProxyFluid fluid = FixtureFluid();
-        fluid.kernel     = kernel;
+        fluid.kernel     = fluid.gradient_kernel = kernel;
         Proxy p = FixtureProxy(&s, eta, PROXY_KERNEL_HALF_SPACE, 0.0, &fluid);
         for (int i = 0; i < 200; i++) {
           const double x[3] = {2.0*sin(1.1*i), 2.0*sin(2.3*i), fmod(0.0137*i, 1.0)}, factor = SPHWallFactor(kernel, 2.0);

@@ -5,7 +5,7 @@
 static void plane_moment_is_the_integral_of_its_definition(void **state)
 {
   (void)state;
-  for (int kernel = 0; kernel < 2; kernel++) {
+  for (int kernel = 0; kernel < SPH_N_KERNELS; kernel++) {
     for (double q = 0.0; q < 1.0; q += 0.09) {
       const int n   = 20000;
       double    sum = 0.0;
@@ -61,13 +61,13 @@ static void height_is_the_distance_from_planes_balls_and_cylinders(void **state)
 static void profile_over_a_ball_is_the_kernels_part_in_the_ball(void **state)
 {
   (void)state;
-  for (int kernel = 0; kernel < 2; kernel++) {
+  for (int kernel = 0; kernel < SPH_N_KERNELS; kernel++) {
     for (double R = 1.25; R < 6.0; R *= 2.0) {
       const ProxyPoint b = Point(1.0/R, 1.0/R);
       for (double d = 0.05; d < 1.0; d += 0.1) {
         const double r[3] = {0, 0, d};
         ProxyPair    pair = {0};
-        assert_true(ProxyPairHalfSpace(kernel, 1.0, &b, r, &pair));
+        assert_true(ProxyPairHalfSpace(kernel, kernel, 1.0, &b, r, &pair));
         assert_close(pair.lambda, FixtureBallPart(kernel, R + d, R), 2e-7, 1.0); // midpoint rule
       }
     }
@@ -87,11 +87,11 @@ static void half_space_gradients_are_exact(void **state)
       double    r[3];
       ProxyPair p, lo, hi;
       for (int k = 0; k < 3; k++) r[k] = 1.6*FixtureRandom(&seed) - (k < 2 ? 0.8 : 0.4);
-      if (!ProxyPairHalfSpace(SPH_CUBIC, 1.0, &b, r, &p)) continue;
+      if (!ProxyPairHalfSpace(SPH_CUBIC, SPH_CUBIC, 1.0, &b, r, &p)) continue;
       for (int k = 0; k < 3; k++) {
         double a[3] = {r[0], r[1], r[2]}, e[3] = {r[0], r[1], r[2]};
         a[k] += d, e[k] -= d;
-        if (!ProxyPairHalfSpace(SPH_CUBIC, 1.0, &b, a, &hi) || !ProxyPairHalfSpace(SPH_CUBIC, 1.0, &b, e, &lo)) continue;
+        if (!ProxyPairHalfSpace(SPH_CUBIC, SPH_CUBIC, 1.0, &b, a, &hi) || !ProxyPairHalfSpace(SPH_CUBIC, SPH_CUBIC, 1.0, &b, e, &lo)) continue;
         // differences: d^2 third derivatives, some hundred in the fades
         assert_close((hi.w - lo.w)/(2.0*d), p.grad_w[k], 1e-8, 1.0);
         assert_close((hi.lambda - lo.lambda)/(2.0*d), p.grad_lambda[k], 1e-8, 1.0);
@@ -112,12 +112,12 @@ static void ellipsoid_gradient_is_exact(void **state)
   for (int i = 0; i < 300; i++) {
     double r[3], grad[3], unused[3];
     for (int k = 0; k < 3; k++) r[k] = (k == 0 ? 3.0 : k == 1 ? 2.0 : 1.6)*FixtureRandom(&seed) - (k == 0 ? 1.5 : k == 1 ? 1.0 : 0.4);
-    ProxyPairEllipsoid(SPH_CUBIC, 1.0, &b, r, grad);
-    if (ProxyPairEllipsoid(SPH_CUBIC, 1.0, &b, r, grad) == 0.0) continue;
+    ProxyPairEllipsoid(SPH_CUBIC, SPH_CUBIC, 1.0, &b, r, grad);
+    if (ProxyPairEllipsoid(SPH_CUBIC, SPH_CUBIC, 1.0, &b, r, grad) == 0.0) continue;
     for (int k = 0; k < 3; k++) {
       double a[3] = {r[0], r[1], r[2]}, e[3] = {r[0], r[1], r[2]};
       a[k] += d, e[k] -= d;
-      assert_close((ProxyPairEllipsoid(SPH_CUBIC, 1.0, &b, a, unused) - ProxyPairEllipsoid(SPH_CUBIC, 1.0, &b, e, unused))/(2.0*d), grad[k], 1e-8, 1.0);
+      assert_close((ProxyPairEllipsoid(SPH_CUBIC, SPH_CUBIC, 1.0, &b, a, unused) - ProxyPairEllipsoid(SPH_CUBIC, SPH_CUBIC, 1.0, &b, e, unused))/(2.0*d), grad[k], 1e-8, 1.0);
     }
   }
 }
@@ -180,7 +180,7 @@ static void stretched_sampling_gives_the_same_density_and_normal_force(void **st
     for (int i = 0; i < N*N; i++) {
       const double r[3] = {0.21/kappa[c] - points[i].x[0], -0.13/kappa[c] - points[i].x[1], 0.4 - points[i].x[2]};
       double       grad[3];
-      const double part = ProxyPairEllipsoid(SPH_CUBIC, 1.0, &points[i], r, grad);
+      const double part = ProxyPairEllipsoid(SPH_CUBIC, SPH_CUBIC, 1.0, &points[i], r, grad);
       phi[c] += part;
       if (part > 0.0) normal[c] += grad[2];
     }

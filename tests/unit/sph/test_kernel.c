@@ -7,7 +7,7 @@ static const double H = 0.7;
 static void KernelIntegratesToOne(void **state)
 {
   (void)state;
-  for (int kernel = 0; kernel < 2; kernel++) {
+  for (int kernel = 0; kernel < SPH_N_KERNELS; kernel++) {
     const int n   = 4000;
     double    sum = 0.0;
 
@@ -25,7 +25,7 @@ static void GradientIsTheDifference(void **state)
   const double e = 1e-5;
 
   (void)state;
-  for (int kernel = 0; kernel < 2; kernel++)
+  for (int kernel = 0; kernel < SPH_N_KERNELS; kernel++)
     for (double r = 0.03; r < H; r += 0.041) assert_close(r * SPHKernelF(kernel, r, H), (SPHKernelW(kernel, r + e, H) - SPHKernelW(kernel, r - e, H)) / (2 * e), 1e-7, 1.0 / (H * H * H * H));
 }
 
@@ -49,7 +49,7 @@ static void HalfSpaceIsTheVolumeBeyond(void **state)
   const double e = 1e-5;
 
   (void)state;
-  for (int kernel = 0; kernel < 2; kernel++) {
+  for (int kernel = 0; kernel < SPH_N_KERNELS; kernel++) {
     for (double d = -0.69; d < 0.75; d += 0.0573) {
       assert_close(SPHHalfSpace(kernel, d, H), Beyond(kernel, d), 1e-6, 1.0); // midpoint rule
       assert_close(SPHHalfSpaceSlope(kernel, d, H), (SPHHalfSpace(kernel, d + e, H) - SPHHalfSpace(kernel, d - e, H)) / (2 * e), 1e-8, 1.0 / H);
@@ -61,7 +61,7 @@ static void HalfSpaceIsTheVolumeBeyond(void **state)
 static void DistanceInvertsTheHalfSpace(void **state)
 {
   (void)state;
-  for (int kernel = 0; kernel < 2; kernel++)
+  for (int kernel = 0; kernel < SPH_N_KERNELS; kernel++)
     for (double q = 0.01; q < 0.9; q += 0.037) assert_close(SPHHalfSpaceDistance(kernel, SPHHalfSpace(kernel, q, 1.0)), q, 1e-6, 1.0); // its bracket
 }
 
