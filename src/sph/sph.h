@@ -34,6 +34,7 @@ typedef struct {
   PetscReal sound_speed;      /* c [m/s] of wcsph; 0 = 10 sqrt(v0^2 + 2 g H)                             */
   PetscReal stiffness;        /* k = c^2 [m^2/s^2] of p = k (rho - rho0); 0 = from the speed of sound    */
   PetscReal artificial_viscosity; /* alpha of wcsph                                                      */
+  PetscReal divergence_tolerance; /* of dfsph: mean compression that the velocity would cause in one step */
   PetscInt  max_iterations;   /* per step; reaching it is reported                                       */
   PetscReal cfl;              /* of 0.4                                                                  */
   PetscReal time_step;        /* fixed step [s]; 0 = adaptive                                            */
