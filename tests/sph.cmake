@@ -2,6 +2,7 @@
 byssus_test(unit/sph/test_kernel base sph)
 byssus_test(unit/sph/test_density base sph)
 byssus_test(unit/sph/test_pressure base sph)
+byssus_test(unit/sph/test_pbf base sph)
 byssus_test(unit/sph/test_ksp base sph)
 byssus_test(unit/sph/test_solvers base sph)
 byssus_test(unit/sph/test_dfsph base sph)

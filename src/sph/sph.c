@@ -185,6 +185,7 @@ static PetscErrorCode AllocateState(SPH sph)
   PetscCall(SPHAddArray_Internal(sph, &sph->id, sizeof(PetscInt)));
   PetscCall(SPHAddArray_Internal(sph, &sph->id_alt, sizeof(PetscInt)));
   PetscCall(SPHAddArray_Internal(sph, &sph->order, sizeof(PetscInt)));
+  if (sph->params.vorticity_confinement > 0) PetscCall(SPHAddArray_Internal(sph, &sph->confine, 6 * one));
   if (sph->params.viscosity > 0) PetscCall(SPHAddArray_Internal(sph, &sph->friction_planes, one));
   if (sph->frame) PetscCall(SPHAddArray_Internal(sph, &sph->frame_kick, 3 * one));
 
@@ -249,6 +250,7 @@ PetscErrorCode SPHSetUp(SPH sph)
   sph->loops.gradient_kernel = sph->gradient_kernel;
   sph->loops.h        = sph->h;
   sph->loops.mass     = sph->mass;
+  sph->loops.rho0     = par->density;
   sph->loops.capacity = 0;
   PetscCall(AllocateState(sph));
   for (PetscInt i = 0; i < sph->n; i++) {

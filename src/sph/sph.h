@@ -43,6 +43,12 @@ typedef struct {
   PetscReal wall_factor;      /* s of method 2; 0 = calibrated value of kernel and h/dx                  */
   PetscReal noise_damping;    /* rate of the noise filter over sqrt(g/h); 0 = no filter                  */
   PetscReal shifting;         /* strength of particle shifting; negative = auto: 4 with isph, else 0       */
+  PetscInt  pbf_iterations;   /* of pbf, a fixed number; 0 = until the tolerance is met                  */
+  PetscReal pbf_warm_start;   /* part of the last pressure that pbf starts from                          */
+  PetscReal pbf_relaxation;   /* epsilon of pbf over the sum of squared gradients in a full lattice      */
+  PetscReal artificial_pressure, artificial_pressure_distance, artificial_pressure_exponent; /* s_corr of pbf: k over lambda of C = 1, |delta q| / h, n */
+  PetscReal xsph;             /* c of XSPH                                                               */
+  PetscReal vorticity_confinement; /* epsilon [m/s]                                                      */
   PetscReal mean_velocity[3]; /* target of the body-force controller [m/s]; 0 0 0 = no controller        */
   PetscBool free_surface;     /* clamp p >= 0                                                            */
   int       solver;           /* SPHSolver                                                               */

@@ -46,6 +46,7 @@ typedef struct {
   PetscErrorCode (*LimitStep)(SPH sph, PetscReal *dt);                 /* lower the adaptive step [s]                                              */
   PetscErrorCode (*Predict)(SPH sph, PetscReal dt);                    /* add to v* forces of its own, before rate = D v*; rho is current          */
   PetscErrorCode (*Solve)(SPH sph, const SPHOperator *op);             /* sph->p [Pa], iterations, converged; wall_rate is current; v* and x stay: it may be called again */
+  PetscErrorCode (*PlaneForces)(SPH sph, PetscReal force[6]);          /* along the planes' axes, of pressure [N]; NULL: of p~ at the configuration of the step */
   PetscErrorCode (*Accelerate)(SPH sph, PetscReal dt);                 /* sph->accel = acceleration of v* by pressure; NULL: -D^T p~               */
   PetscErrorCode (*Drift)(SPH sph, PetscReal dt, PetscReal *path);     /* move x (wrapped by the caller), tell the longest path [m]; NULL: x += dt v */
 } SPHSolverOps;
@@ -131,6 +132,7 @@ struct _p_SPH {
   PetscReal *G_planes, *G;           /* n x 3 [kg/m^4], planes alone and the union       */
   PetscReal *rate;                   /* n, D v* without the walls' own motion [kg/(m^3 s)] */
   PetscReal *wall_rate;              /* n, sum_b rho0 c share . v_b                      */
+  PetscReal *confine;                /* 2 n x 3, vorticity [1/s] and slope of its size; confinement only */
   PetscReal *friction_planes;        /* n, k of the planes [1/s]; viscous flows only     */
 
   /* pressure solve; y = p~/scale, root = 1/scale or 0 */
@@ -182,6 +184,10 @@ PETSC_INTERN void SPHSumPartials(SPH sph, int n_sums, PetscReal sums[]);
 PETSC_INTERN PetscErrorCode SPHFindPlanes_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHWallRate_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHPlaneForces_Internal(SPH sph);
+/* walls at a place x near that of particle i, dt later: what planes leave open and, by plane, rho0 grad phi along its axis [kg/m^4]; what surfaces leave
+   open, linear in the way relative to them, with `solid` = their part of G */
+PETSC_INTERN void      SPHPlanesAt_Internal(SPH sph, PetscReal dt, const PetscReal x[3], PetscReal *open, PetscReal part[6]);
+PETSC_INTERN PetscReal SPHSurfacesAt_Internal(SPH sph, int i, PetscReal dt, const PetscReal x[3], const PetscReal solid[3]);
 /* force [N] of the pressure of particle i on plane k along the plane's axis */
 PETSC_INTERN PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k);
 PETSC_INTERN PetscReal SPHSurfaceDistance_Internal(SPH sph, const SPHContacts *contacts, PetscInt t);
@@ -216,6 +222,10 @@ PETSC_INTERN void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt);
 /* sph_viscosity.c */
 PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);
 PETSC_INTERN PetscErrorCode SPHFilterPredict_Internal(SPH sph, PetscReal dt);
+
+/* sph_smooth.c */
+PETSC_INTERN PetscErrorCode SPHSmoothPredict_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHConfinePredict_Internal(SPH sph, PetscReal dt);
 
 /* sph_pressure.c: the solver that the parameters ask for */
 PETSC_INTERN const SPHSolverOps *SPHFindSolver_Internal(const SPHParams *params);

@@ -22,6 +22,7 @@ typedef struct {
   int           gradient_kernel; /* SPHKernelType of gradients                           */
   int           capacity;    /* slots per particle, on average over a chunk              */
   double        h, mass;     /* support [m], mass of a particle [kg]                     */
+  double        rho0;        /* rest density [kg/m^3]                                    */
   SPHGrid       grid;
   const double *x;           /* n x 3 positions [m], sorted by cell                      */
   int          *cell;        /* n, cell of each particle                                 */
@@ -62,6 +63,8 @@ typedef struct {
   void (*Difference)(const SPHLoops *l);                                         /* vector = sum (p_j - p_i) m grad W    */
   void (*VelocityGradient)(const SPHLoops *l, double gradient[]);                /* n x 9: sum (v_j - v_i)_a (m grad W)_b of vector */
   void (*Concentration)(const SPHLoops *l, double w0, double gradient[]);        /* n x 3: sum weight m grad W           */
+  void (*Smooth)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum (m/rho0) (v_j - v_i) W of vector */
+  void (*Repulsion)(const SPHLoops *l, const double x[], double k, double distance, double n, double a[]); /* a -= sum k (W/W(distance))^n m grad W, particles at x */
 } SPHLoopTable;
 
 extern const SPHLoopTable SPHLoopsOpenMPSingle, SPHLoopsOpenMPDouble;

@@ -402,8 +402,59 @@ static void Filter(const SPHLoops *l, double factor, double a[])
   }
 }
 
+/* kernel of the density at the distances of the pairs of particle i, particles at x */
+static inline real PairDistance(const SPHLoops *l, const double x[], int i, int j)
+{
+  double r2 = 0;
+
+  for (int q = 0; q < 3; q++) {
+    double dx = x[3*i + q] - x[3*j + q];
+    if (l->grid.periodic[q]) dx -= l->grid.period[q] * rint(dx / l->grid.period[q]);
+    r2 += dx * dx;
+  }
+  return SQRT((real)r2);
+}
+
+/* a_i += factor sum_j V (v_j - v_i) W_ij */
+static void Smooth(const SPHLoops *l, double factor, double a[])
+{
+  const real *v = (const real *)l->vector, h = (real)l->h, volume = (real)(l->mass / l->rho0);
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++) {
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+      const int *list = l->neighbour + l->start[i];
+      const Vec4 vi = Load4(v + 4 * (size_t)i);
+      Vec4       sum = {0};
+
+      for (int k = 0; k < l->count[i]; k++) sum += SPHPairSmooth(l->kernel, volume, PairDistance(l, l->x, i, list[k]), h) * (Load4(v + 4 * (size_t)list[k]) - vi);
+      for (int q = 0; q < 3; q++) a[3*i + q] += factor * (double)sum[q];
+    }
+  }
+}
+
+/* a_i -= sum_j k (W_ij/W(distance))^n m grad W_ij */
+static void Repulsion(const SPHLoops *l, const double x[], double strength, double distance, double n, double a[])
+{
+  const real *gradient = (const real *)l->gradient, h = (real)l->h, W0 = SPHKernelW(l->kernel, (real)distance, h);
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++) {
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+      const int  *list = l->neighbour + l->start[i];
+      const real *g = gradient + 3 * (size_t)l->start[i];
+      Vec4        sum = {0};
+
+      for (int k = 0; k < l->count[i]; k++, g += 3)
+        sum += SPHPairRepulsion((real)strength, SPHKernelW(l->kernel, PairDistance(l, x, i, list[k]), h) / W0, (real)n) * Load4(g);
+      for (int q = 0; q < 3; q++) a[3*i + q] -= (double)sum[q];
+    }
+  }
+}
+
 #include "sph_openmp_compact.h"
 
 const SPHLoopTable SPH_TABLE = {SPH_LABEL, (int)sizeof(real), Pairs, Move,     Density,   SetWalls, SetPressure, SetVelocity, Acceleration,
                                 GetVector, Rate,              Diagonal, Viscosity, Filter,
-                                Compact,   ScaleCompact, Laplacian, Difference, VelocityGradient, Concentration};
+                                Compact,   ScaleCompact, Laplacian, Difference, VelocityGradient, Concentration,
+                                Smooth,    Repulsion};

@@ -4,6 +4,8 @@
 #ifndef BY_SPH_PAIR_H
 #define BY_SPH_PAIR_H
 
+#include <math.h>
+
 #include "sph_kernel.h"
 
 /* density: rho_i = sum_j m W_ij + rho0 phi_i, the particle itself included [kg/m^3] */
@@ -72,6 +74,26 @@ BY_HD SPH_REAL SPHSourceShare(SPH_REAL e, SPH_REAL relax)
    and central, so that momentum and angular momentum stay and energy falls. SPHPairRate() gives the bracket.
    N = 2/3 sum |g|^2 of a full cubic lattice, there the largest eigenvalue. */
 BY_HD SPH_REAL SPHFilterNorm(SPH_REAL sum_of_squares) { return (SPH_REAL)(2.0/3.0) * sum_of_squares; }
+
+/* position-based fluids: q_i = -lambda_i/rho0 = (rho_i - rho0)/(D D^T)_ii [m^5/kg] with the denominator relaxed, x_i += -sum_j (q_i + q_j) m grad W_ij
+   [Macklin & Mueller 2013, eq. 11: lambda_i = -C_i/(sum_k |grad_k C_i|^2 + epsilon), where (D D^T)_ii = rho0^2 sum_k |grad_k C_i|^2] */
+BY_HD SPH_REAL SPHConstraintStep(SPH_REAL excess, SPH_REAL diagonal, SPH_REAL epsilon) { return excess / (diagonal + epsilon); }
+
+/* artificial pressure of a pair, added to q_i + q_j: k (W(r)/W(delta q))^n [m^5/kg] [Macklin & Mueller 2013, eq. 13] */
+BY_HD SPH_REAL SPHPairRepulsion(SPH_REAL k, SPH_REAL W_over_reference, SPH_REAL n) { return W_over_reference > (SPH_REAL)0 ? k * (SPH_REAL)pow((double)W_over_reference, (double)n) : (SPH_REAL)0; }
+
+/* XSPH: v_i += c sum_j V (v_j - v_i) W_ij, V = m/rho0 [Schechter & Bridson 2012, eq. 17 of Macklin & Mueller]; the same V for all keeps momentum */
+BY_HD SPH_REAL SPHPairSmooth(int kernel, SPH_REAL volume, SPH_REAL r, SPH_REAL h) { return volume * SPHKernelW(kernel, r, h); }
+
+/* vorticity confinement: acceleration epsilon N x omega, N = eta/|eta|, eta = grad |omega| [Fedkiw et al. 2001, eq. 16 of Macklin & Mueller] */
+BY_HD void SPHConfinement(SPH_REAL epsilon, const SPH_REAL eta[3], const SPH_REAL omega[3], SPH_REAL a[3])
+{
+  const SPH_REAL length = (SPH_REAL)sqrt((double)(eta[0]*eta[0] + eta[1]*eta[1] + eta[2]*eta[2])), f = length > (SPH_REAL)0 ? epsilon/length : (SPH_REAL)0;
+
+  a[0] = f * (eta[1]*omega[2] - eta[2]*omega[1]);
+  a[1] = f * (eta[2]*omega[0] - eta[0]*omega[2]);
+  a[2] = f * (eta[0]*omega[1] - eta[1]*omega[0]);
+}
 
 /* friction of a no-slip wall, a_i = k (v_wall - v_i), k = 2 nu |grad phi| / d [1/s]: the integral over the wall's half-space of
    2 nu (v_i - v) (dW/dr)/r with v continued linearly through its value on the wall, v_i - v(z) = (v_i - v_wall) z/d, because

@@ -115,6 +115,8 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
   }
   if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
   if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
+  if (sph->params.xsph > 0) PetscCall(SPHSmoothPredict_Internal(sph));
+  if (sph->params.vorticity_confinement > 0) PetscCall(SPHConfinePredict_Internal(sph, dt));
   if (sph->method->Predict) PetscCall(sph->method->Predict(sph, dt));
   if (!sph->method->ignores_rate) {
     sph->table->SetVelocity(&sph->loops, sph->v_star);

@@ -107,6 +107,29 @@ PetscReal SPHPlaneDrag_Internal(SPH sph, int i, PetscReal drag[3])
   return power;
 }
 
+void SPHPlanesAt_Internal(SPH sph, PetscReal dt, const PetscReal x[3], PetscReal *open, PetscReal part[6])
+{
+  PetscReal phi[6], slope[6], d[6];
+  int       plane[6];
+  const int touched = TouchedPlanes(sph, x, plane, phi, slope, d);
+
+  (void)dt;
+  *open = OpenBut(touched, plane, phi, -1);
+  for (int k = 0; k < 6; k++) part[k] = 0.0;
+  for (int k = 0; k < touched; k++) {
+    part[plane[k]] = sph->params.density * OpenBut(touched, plane, phi, plane[k] / 2) * slope[k];
+  }
+}
+
+PetscReal SPHSurfacesAt_Internal(SPH sph, int i, PetscReal dt, const PetscReal x[3], const PetscReal solid[3])
+{
+  const PetscReal planes = sph->open[i] / PetscMax(sph->open_surfaces[i], 1e-12);
+  PetscReal       rate   = -dt * sph->wall_rate[i];
+
+  for (int k = 0; k < 3; k++) rate += solid[k] * (x[k] - sph->x[3 * i + k]);
+  return PetscMin(1.0, PetscMax(0.0, sph->open_surfaces[i] - rate / (sph->params.density * PetscMax(planes, 1e-12))));
+}
+
 static PetscErrorCode AllocateSurfaces(SPH sph, PetscInt n, const SPHContacts contacts[])
 {
   PetscFunctionBegin;
@@ -288,8 +311,12 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
   const int       n      = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
   const PetscReal rho0   = sph->params.density, nu = sph->params.viscosity / rho0, to_tilde = 1.0 / (rho0 * rho0);
 
+  PetscReal       pressure[6];
+  const PetscBool of_solver = (PetscBool)(sph->method->PlaneForces != NULL);
+
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(sph->wall_force, 18));
+  if (of_solver) PetscCall(sph->method->PlaneForces(sph, pressure));
   for (int axis = 0; axis < 3; axis++) {
     PetscReal sums[6];
 
@@ -309,7 +336,7 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
           PetscReal      *f    = force + 3 * (plane[k] % 2);
 
           if (plane[k] / 2 != axis) continue;
-          f[axis] += PlanePressure(sph, i, plane[k], d[k], part * slope[k]);
+          if (!of_solver) f[axis] += PlanePressure(sph, i, plane[k], d[k], part * slope[k]);
           if (nu > 0 && !(sph->slip >> plane[k] & 1)) {
             const PetscReal friction = sph->mass * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
             for (int a = 0; a < 3; a++) f[a] += friction * (sph->v_star[3 * i + a] - v[a]);
@@ -320,6 +347,7 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
     }
     SPHSumPartials(sph, 6, sums);
     for (int k = 0; k < 6; k++) sph->wall_force[6 * axis + k] = sums[k];
+    for (int k = 0; of_solver && k < 2; k++) sph->wall_force[6 * axis + 3 * k + axis] += pressure[2 * axis + k];
   }
   if (sph->n_patches) SPHPatchForces_Internal(sph);
   PetscFunctionReturn(PETSC_SUCCESS);
