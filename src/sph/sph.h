@@ -20,6 +20,7 @@ typedef enum {
 typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2, SPH_KERNEL_POLY6, SPH_KERNEL_SPIKY } SPHKernelType;
 typedef enum { SPH_NORM_AUTO, SPH_NORM_MEAN, SPH_NORM_LARGEST } SPHNorm;
 typedef enum { SPH_VISCOUS_MORRIS, SPH_VISCOUS_MONAGHAN } SPHViscousForm;
+typedef enum { SPH_BOUNDED_NEWTON, SPH_BOUNDED_MPRGP } SPHBounded;
 typedef enum { SPH_PRECISION_SINGLE, SPH_PRECISION_DOUBLE } SPHPrecision;
 
 /* Parameters of the section `sph:`; SPHKeys[] (sph_keys.c) declares each with unit, default and range. */
@@ -52,6 +53,7 @@ typedef struct {
   PetscReal mean_velocity[3]; /* target of the body-force controller [m/s]; 0 0 0 = no controller        */
   PetscBool free_surface;     /* clamp p >= 0                                                            */
   int       solver;           /* SPHSolver                                                               */
+  int       bounded;          /* SPHBounded                                                              */
   int       kernel;           /* SPHKernelType of density                                                */
   int       gradient_kernel;  /* of every gradient, at pairs and walls: 0 = the same, else SPHKernelType + 1 */
   int       viscous_form;     /* SPHViscousForm                                                          */

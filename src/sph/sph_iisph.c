@@ -1,5 +1,6 @@
 /* sph_iisph.c - implicit incompressible SPH [Ihmsen et al., IEEE TVCG 20 (2014), doi:10.1109/TVCG.2013.105] on the system of sph_pressure.c:
-   by projected conjugate gradients (sph_mprgp.c; Dostal, Optimal Quadratic Programming Algorithms (2009) ch. 5), by plain ones where
+   by projected Newton steps with conjugate residuals (sph_newton.c) or projected conjugate gradients (sph_mprgp.c; Dostal, Optimal Quadratic
+   Programming Algorithms (2009) ch. 5), by plain ones where
    pressure may have either sign (sph_closed.c), by any KSP of PETSc (sph_ksp.c), or by the paper's relaxed Jacobi. */
 #include "sph_impl.h"
 
@@ -12,6 +13,7 @@ static PetscErrorCode SolveGradients(SPH sph, const SPHOperator *op)
   PetscCall(SPHFindNorm_Internal(sph, op));
   PetscCall(SPHWantsKSP_Internal(sph, &by_ksp));
   if (by_ksp) PetscCall(SPHSolveKSP_Internal(sph, op));
+  else if (sph->params.free_surface && sph->params.bounded == SPH_BOUNDED_NEWTON) PetscCall(SPHSolveNewton_Internal(sph, op));
   else if (sph->params.free_surface) PetscCall(SPHSolveMPRGP_Internal(sph, op));
   else PetscCall(SPHSolveCG_Internal(sph, op));
   SPHStorePressure_Internal(sph);

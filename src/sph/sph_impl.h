@@ -239,9 +239,10 @@ PETSC_INTERN void SPHPressureAcceleration_Internal(SPH sph);
 /* BY_ERR_BREAKDOWN when a pressure is not a number */
 PETSC_INTERN PetscErrorCode SPHCheckPressure_Internal(SPH sph);
 
-/* sph_mprgp.c, sph_closed.c, sph_iisph.c: what works on the operator */
+/* sph_newton.c, sph_mprgp.c, sph_closed.c, sph_iisph.c: what works on the operator */
 PETSC_INTERN PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveMPRGP_Internal(SPH sph, const SPHOperator *op);
+PETSC_INTERN PetscErrorCode SPHSolveNewton_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHSolveCG_Internal(SPH sph, const SPHOperator *op);
 /* sph_ksp.c: whether the options choose a KSP or TAO for the system, the solve, and what it keeps in method_data */
 PETSC_INTERN PetscErrorCode SPHWantsKSP_Internal(SPH sph, PetscBool *wanted);

@@ -6,6 +6,7 @@ static const char *const Kernels[]    = {"cubic_spline", "wendland_c2", "poly6",
 static const char *const Gradients[]  = {"same", "cubic_spline", "wendland_c2", "poly6", "spiky", NULL};
 static const char *const Norms[]      = {"auto", "mean", "largest", NULL};
 static const char *const Viscous[]    = {"morris", "monaghan", NULL};
+static const char *const Bounded[]    = {"newton", "mprgp", NULL};
 static const char *const Precisions[] = {"single", "double", NULL};
 
 #define FIELD(f) offsetof(SPHParams, f)
@@ -43,6 +44,7 @@ const Key SPHKeys[] = {
   {"mean_velocity", KEY_VEC3, FIELD(mean_velocity), "m/s", "0, 0, 0", -1e3, 1e3, 0, NULL, "mean velocity kept by a body force; a zero component is left alone"},
   {"free_surface", KEY_BOOL, FIELD(free_surface), "", "true", 0, 0, 0, NULL, "no negative pressure; false for a domain full of fluid"},
   {"solver", KEY_CHOICE, FIELD(solver), "", "auto", 0, 0, 0, Solvers, "pressure solver; auto = iisph with a free surface, isph without"},
+  {"bounded", KEY_CHOICE, FIELD(bounded), "", "newton", 0, 0, 0, Bounded, "how iisph keeps pressure from becoming negative: projected Newton steps with conjugate residuals, or projected conjugate gradients"},
   {"kernel", KEY_CHOICE, FIELD(kernel), "", "cubic_spline", 0, 0, 0, Kernels, "smoothing kernel"},
   {"gradient_kernel", KEY_CHOICE, FIELD(gradient_kernel), "", "same", 0, 0, 0, Gradients, "kernel of all gradients, where it is not that of density (Mueller 2003: poly6 with spiky)"},
   {"viscous_form", KEY_CHOICE, FIELD(viscous_form), "", "morris", 0, 0, 0, Viscous, "form of viscosity: morris is the more accurate at walls, monaghan keeps angular momentum"},

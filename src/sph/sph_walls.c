@@ -295,11 +295,10 @@ void SPHAddWallDensity_Internal(SPH sph, PetscReal dt, const PetscReal x[], Pets
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     int       plane[6];
-    PetscReal phi[6], slope[6], d[6], open = sph->open_surfaces[i], part;
+    PetscReal phi[6], slope[6], d[6], part;
     const int touched = TouchedPlanes(sph, x + 3 * i, plane, phi, slope, d);
 
-    for (int k = 0; k < touched; k++) open *= 1.0 - phi[k];
-    part = rho0 * (1.0 - open) - dt * sph->wall_rate[i];
+    part = rho0 * (1.0 - sph->open_surfaces[i] * OpenBut(touched, plane, phi, -1)) - dt * sph->wall_rate[i];
     for (int k = 0; k < 3 && sph->n_surfaces; k++) part += (sph->G[3 * i + k] - sph->open_surfaces[i] * sph->G_planes[3 * i + k]) * (x[3 * i + k] - sph->x[3 * i + k]);
     rho[i] += PetscMax(0.0, part);
   }
