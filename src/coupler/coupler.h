@@ -147,6 +147,8 @@ typedef struct {
   PetscReal momentum[3], angular[3];           /* of fluid and bodies                                        */
   PetscReal compression_mean, compression_max; /* of the fluid                                               */
   PetscReal speed_max, speed_rms;              /* of the fluid                                               */
+  PetscInt  fluid_particles;                   /* buffers of openings included                               */
+  PetscReal fluid_entered, fluid_left;         /* through openings since the start [m^3]                     */
   PetscReal solid_volume;
   PetscReal work_motion;                       /* on the fluid since the start, by walls, obstacles and a tank that move [J] */
   PetscReal solid_contact_energy, solid_external_work; /* stored in contact; done by fluid, loads and supports since the start */

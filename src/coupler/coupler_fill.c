@@ -256,10 +256,10 @@ static void FieldVelocity(const FillParams *fill, const PetscReal x[3], PetscRea
 }
 
 /* velocities of the blocks' fields where packing has left the particles */
-static PetscErrorCode SetVelocities(SPH sph, const Names *names, const PetscInt block[])
+static PetscErrorCode SetVelocities(SPH sph, const Names *names, PetscInt n_filled, const PetscInt block[])
 {
   FillParams       fill[BY_NAMES_MAX];
-  const PetscReal *x, *p;
+  const PetscReal *x, *v, *p;
   const PetscInt  *id;
   PetscReal       *new_x, *new_v, *new_p;
   PetscInt         n, *new_id;
@@ -268,12 +268,15 @@ static PetscErrorCode SetVelocities(SPH sph, const Names *names, const PetscInt 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < names->n; k++) ByCall(ReadFill(names->name[k], &fill[k], &has_box));
   PetscCall(SPHGetSize(sph, &n));
-  PetscCall(SPHGetState(sph, &x, NULL, &p, NULL, &id));
+  PetscCall(SPHGetState(sph, &x, &v, &p, NULL, &id));
   PetscCall(PetscMalloc4(3 * n, &new_x, 3 * n, &new_v, n, &new_p, n, &new_id));
   PetscCall(PetscArraycpy(new_x, x, 3 * n));
   PetscCall(PetscArraycpy(new_p, p, n));
   PetscCall(PetscArraycpy(new_id, id, n));
-  for (PetscInt i = 0; i < n; i++) FieldVelocity(&fill[block[id[i]]], x + 3 * i, new_v + 3 * i);
+  for (PetscInt i = 0; i < n; i++) {
+    if (id[i] < n_filled) FieldVelocity(&fill[block[id[i]]], x + 3 * i, new_v + 3 * i);
+    else PetscCall(PetscArraycpy(new_v + 3 * i, v + 3 * i, 3)); // of an inlet
+  }
   ByCall(SPHSetState(sph, n, new_id, new_x, new_v, new_p));
   PetscCall(PetscFree4(new_x, new_v, new_p, new_id));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -391,7 +394,7 @@ PetscErrorCode CouplerBuildFluid(Coupler c, const DomainParams *domain)
   }
   CloudFilter(&cloud, 0, keep);
   PetscCall(PetscFree(keep));
-  if (!cloud.n) {
+  if (!cloud.n && !params->inflow.n && !params->sources.n) {
     PetscFunctionReturn(InputError("sph.fill", "there is no fluid: no particle fits into the water blocks\n"
                                    "name at least one block that is wider than sph.spacing = %g m and lies in the domain, outside the bodies",
                                    (double)params->spacing));
@@ -400,7 +403,7 @@ PetscErrorCode CouplerBuildFluid(Coupler c, const DomainParams *domain)
   PetscCall(PetscFree(cloud.x));
   ByCall(SPHSetUp(c->sph));
   ByCall(SPHPack(c->sph, 1e-3, 100, c->n_surfaces ? PackContacts : NULL, c));
-  ByCall(SetVelocities(c->sph, &params->fill, cloud.block));
+  ByCall(SetVelocities(c->sph, &params->fill, cloud.n, cloud.block));
   PetscCall(PetscFree(cloud.block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

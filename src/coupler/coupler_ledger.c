@@ -65,6 +65,8 @@ PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
     l->speed_max          = f.speed_max;
     l->speed_rms          = f.speed_rms;
     l->work_motion        = f.wall_work + f.frame_work;
+    l->fluid_particles    = f.particles;
+    PetscCall(SPHGetVolumes(c->sph, &l->fluid_entered, &l->fluid_left));
     for (int i = 0; i < 3; i++) {
       l->momentum[i] = f.momentum[i];
       l->angular[i]  = f.angular[i];

@@ -11,7 +11,8 @@ static const char *const ledger_headers[] = {
   "solid_potential [J]", "solid_damping_loss [J]", "work_fluid [J]", "work_solid [J]", "momentum_x [kg m/s]", "momentum_y [kg m/s]",
   "momentum_z [kg m/s]", "angular_x [kg m^2/s]", "angular_y [kg m^2/s]", "angular_z [kg m^2/s]", "fluid_speed_max [m/s]",
   "fluid_speed_rms [m/s]", "solid_volume [m^3]",
-  "solid_contact_energy [J]", "solid_external_work [J]", "work_motion [J]"};
+  "solid_contact_energy [J]", "solid_external_work [J]", "work_motion [J]",
+  "fluid_particles [1]", "fluid_entered [m^3]", "fluid_left [m^3]"};
 
 enum { N_LEDGER = sizeof(ledger_headers) / sizeof(ledger_headers[0]) };
 
@@ -74,7 +75,7 @@ static PetscErrorCode WriteLedger(Coupler c, CouplerResults *r)
                                    l.fluid_viscous_loss, l.solid_kinetic, l.solid_strain, l.solid_potential, l.solid_damping_loss, l.work_fluid,
                                    l.work_solid, l.momentum[0], l.momentum[1], l.momentum[2], l.angular[0], l.angular[1], l.angular[2],
                                    l.speed_max, l.speed_rms, l.solid_volume, l.solid_contact_energy,
-                                   l.solid_external_work, l.work_motion};
+                                   l.solid_external_work, l.work_motion, (PetscReal)l.fluid_particles, l.fluid_entered, l.fluid_left};
   ByCall(TableWrite(r->ledger, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -117,6 +117,32 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode SaveFlows(SPH sph, Checkpoint file)
+{
+  PetscReal flows[2 * BY_REALS_MAX * BY_NAMES_MAX];
+  PetscInt  n;
+
+  PetscFunctionBegin;
+  PetscCall(SPHGetFlows(sph, &n, flows));
+  if (n) ByCall(CheckpointWriteReal(file, "fluid/flows", n, flows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadFlows(SPH sph, Checkpoint file)
+{
+  PetscReal flows[2 * BY_REALS_MAX * BY_NAMES_MAX];
+  PetscInt  n, n_saved;
+
+  PetscFunctionBegin;
+  PetscCall(SPHGetFlows(sph, &n, NULL));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointGetSize(file, "fluid/flows", &n_saved));
+  if (n_saved != n) PetscFunctionReturn(InputError("resume", "the saved state has %d inlets, outlets and sources, the scene has %d", (int)PetscMax(0, n_saved - 1), (int)(n - 1)));
+  ByCall(CheckpointReadReal(file, "fluid/flows", n, flows));
+  PetscCall(SPHSetFlows(sph, n, flows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* write DIRECTORY/checkpoint.h5: everything a step reads */
 PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[])
 {
@@ -144,6 +170,7 @@ PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[]
     ByCall(CheckpointWriteReal(file, "fluid/pressure", n, p));
     PetscCall(SPHGetInternals(c->sph, internals));
     ByCall(CheckpointWriteReal(file, "fluid/internals", SPH_INTERNALS, internals));
+    ByCall(SaveFlows(c->sph, file));
   }
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(SaveBody(file, &c->surface[k]));
   for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++)
@@ -166,6 +193,7 @@ static PetscErrorCode LoadFluid(Coupler c, Checkpoint file)
   ByCall(CheckpointReadReal(file, "fluid/velocity", 3 * n, v));
   ByCall(CheckpointReadReal(file, "fluid/pressure", n, p));
   PetscCall(SPHSetState(c->sph, n, id, x, v, p));
+  ByCall(LoadFlows(c->sph, file));
   ByCall(CheckpointReadReal(file, "fluid/internals", SPH_INTERNALS, internals));
   PetscCall(SPHSetInternals(c->sph, internals));
   PetscCall(PetscFree4(id, x, v, p));

@@ -217,7 +217,8 @@ PetscErrorCode SPHSetUp(SPH sph)
   PetscFunctionBegin;
   if (sph->setup) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(par->spacing > 0)) PetscFunctionReturn(InputError("sph.spacing", "must be a finite number > 0 [m]"));
-  if (sph->n == 0) PetscFunctionReturn(InputError("sph.fill", "there is no fluid: no particle is in the blocks of fluid"));
+  ByCall(SPHOpenFromOptions_Internal(sph));
+  if (sph->n == 0 && !sph->n_openings) PetscFunctionReturn(InputError("sph.fill", "there is no fluid: no particle is in the blocks of fluid"));
   sph->h = par->support * par->spacing;
   for (int k = 0; k < 3; k++) {
     if ((sph->periodic >> k & 1) && sph->max[k] - sph->min[k] < 2.0 * sph->h) {
@@ -228,6 +229,7 @@ PetscErrorCode SPHSetUp(SPH sph)
   if (!sph->method->Solve) PetscFunctionReturn(InputError("sph.solver", "%s is not in this version", sph->method->name));
   if (sph->params.tolerance == 0.0) sph->params.tolerance = sph->method->tolerance;
   sph->gradient_kernel = SPHGradientKernel(par);
+  sph->flow_speed      = PetscMax(Norm3(par->mean_velocity), SPHOpenSpeed_Internal(sph));
   LatticeSums(par->kernel, sph->gradient_kernel, par->spacing, sph->h, &W, &grad2);
   sph->mass        = par->density / W;
   if (sph->particle_volume > 0) sph->mass *= sph->particle_volume / PetscPowReal(par->spacing, 3);
@@ -235,14 +237,14 @@ PetscErrorCode SPHSetUp(SPH sph)
   sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, sph->gradient_kernel, par->support);
   sph->relax_time  = par->relax_time;
   if (sph->relax_time == 0.0 && sph->method->relaxes) {
-    const PetscReal speed = PetscMax(sqrt(g * sph->h), Norm3(par->mean_velocity));
+    const PetscReal speed = PetscMax(sqrt(g * sph->h), sph->flow_speed);
     sph->relax_time       = speed > 0 ? 0.5 * sph->h / speed : -1.0;
   }
   sph->wall_flux   = 1.0;
   sph->shifting    = PetscMax(0.0, par->shifting);
   sph->prototype   = grad2 * sph->mass * sph->mass;
   sph->filter_norm = SPHFilterNorm(sph->prototype);
-  sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), Norm3(par->mean_velocity) / sph->h);
+  sph->filter_rate = par->noise_damping * PetscMax(sqrt(g / sph->h), sph->flow_speed / sph->h);
 
   sph->table          = par->precision == SPH_PRECISION_DOUBLE ? &SPHLoopsOpenMPDouble : &SPHLoopsOpenMPSingle;
   sph->loops.n        = (int)sph->n;
@@ -258,6 +260,8 @@ PetscErrorCode SPHSetUp(SPH sph)
     sph->rho[i]  = par->density;
     sph->mode[i] = 1.0 + 0.5 * sin(12.9898 * (double)i); // any start that no symmetry makes orthogonal
   }
+  sph->next_id = sph->n;
+  PetscCall(SPHOpenSetUp_Internal(sph));
   ByCall(SPHCheckState_Internal(sph, "at the start"));
   if (sph->method->SetUp) ByCall(sph->method->SetUp(sph));
   sph->setup = PETSC_TRUE;
@@ -294,6 +298,7 @@ PetscErrorCode SPHDestroy(SPH *sph)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SPHFreeArrays_Internal(s));
+  PetscCall(SPHOpenDestroy_Internal(s));
   if (s->method && s->method->Destroy) PetscCall(s->method->Destroy(s));
   PetscCall(SPHCompactDestroy_Internal(s));
   PetscCall(PetscFree(s->loops.grid.start));

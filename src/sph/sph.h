@@ -2,7 +2,7 @@
 #ifndef BY_SPH_H
 #define BY_SPH_H
 
-#include "keys.h"
+#include "course.h"
 #include "motion.h"
 
 typedef struct _p_SPH *SPH;
@@ -59,12 +59,43 @@ typedef struct {
   int       viscous_form;     /* SPHViscousForm                                                          */
   int       precision;        /* SPHPrecision of the pair loops; positions and velocities are kept in double */
   Names     fill;             /* names of blocks sph.<name>: read by the coupler's scene builder         */
+  Names     inflow, outflow, sources; /* names of openings sph.<name>                                    */
 } SPHParams;
 
 BY_EXTERN const Key SPHKeys[];
 
 /* SPHKernelType that gradients are taken from */
 static inline int SPHGradientKernel(const SPHParams *params) { return params->gradient_kernel ? params->gradient_kernel - 1 : params->kernel; }
+/* Openings (sph_open.c): a rectangle on a side of the domain, or a disc in it. */
+typedef enum { SPH_PROFILE_UNIFORM, SPH_PROFILE_PARABOLIC, SPH_PROFILE_TABLE } SPHProfile;
+
+typedef struct {
+  int          side;           /* 0..5: xmin xmax ymin ymax zmin zmax                           */
+  PetscReal    min[3], max[3]; /* rectangle on it, clipped to the domain [m]                    */
+  PetscReal    velocity;       /* mean [m/s], times the course                                  */
+  int          profile;        /* SPHProfile                                                    */
+  int          profile_axis;   /* 0..2                                                          */
+  char         profile_table[PETSC_MAX_PATH_LEN];
+  CourseParams course;
+} SPHInflowParams;
+
+typedef struct {
+  int          side;
+  PetscReal    min[3], max[3];
+  PetscReal    velocity;        /* [m/s]; negative: what arrives leaves, against a given pressure */
+  PetscReal    pressure, level; /* [Pa]; [m] of still water against gravity, -1e6: none           */
+  CourseParams course;          /* of velocity                                                    */
+} SPHOutflowParams;
+
+typedef struct {
+  PetscReal    center[3], direction[3], radius; /* [m], [1], [m]                                */
+  PetscReal    velocity, flow_rate;             /* one of them: [m/s], [m^3/s]                  */
+  int          profile;                         /* SPHProfile, no table                         */
+  PetscReal    volume;                          /* [m^3] that comes out; 0 = no end             */
+  CourseParams course;
+} SPHSourceParams;
+
+BY_EXTERN const Key SPHInflowKeys[], SPHOutflowKeys[], SPHSourceKeys[];
 
 /* What one surface (elastic body or obstacle) does to the particles within reach, made by src/proxy each step.
    phi is the part of the kernel's volume that lies in the body (method 2: lambda; 0 far away), grad its gradient with
@@ -107,6 +138,10 @@ BY_EXTERN PetscErrorCode SPHSetFrame(SPH sph, const Motion *motion);
 BY_EXTERN PetscErrorCode SPHAddParticles(SPH sph, PetscInt n, const PetscReal x[], const PetscReal v[]);
 /* volume of fluid [m^3] that a particle stands for, where it is not spacing^3: a lattice stretched to fill a closed box exactly; before SetUp */
 BY_EXTERN PetscErrorCode SPHSetParticleVolume(SPH sph, PetscReal volume);
+/* openings, after SPHSetDomain and before SPHSetUp; those that the options name (sph.inflow, outflow, sources) are added by SPHSetUp */
+BY_EXTERN PetscErrorCode SPHAddInflow(SPH sph, const char name[], const SPHInflowParams *params);
+BY_EXTERN PetscErrorCode SPHAddOutflow(SPH sph, const char name[], const SPHOutflowParams *params);
+BY_EXTERN PetscErrorCode SPHAddSource(SPH sph, const char name[], const SPHSourceParams *params);
 BY_EXTERN PetscErrorCode SPHSetUp(SPH sph);
 BY_EXTERN PetscErrorCode SPHView(SPH sph, PetscViewer viewer);
 BY_EXTERN PetscErrorCode SPHDestroy(SPH *sph);
@@ -146,12 +181,17 @@ BY_EXTERN PetscErrorCode SPHGetState(SPH sph, const PetscReal *x[], const PetscR
 BY_EXTERN PetscErrorCode SPHGetMass(SPH sph, PetscReal *particle_mass);
 BY_EXTERN PetscErrorCode SPHGetSupport(SPH sph, PetscReal *h);
 BY_EXTERN PetscErrorCode SPHGetDomain(SPH sph, PetscReal min[3], PetscReal max[3], unsigned *walls, unsigned *periodic);
-/* restart: all particles by id (0..n-1): x, v [n x 3], p [n] (warm start); and the controller's state */
+/* restart: all particles, any number of them where there are openings, by id: x, v [n x 3], p [n] (warm start) */
 BY_EXTERN PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const PetscReal x[], const PetscReal v[], const PetscReal p[]);
 /* numbers beside the particles that the next step depends on, so that a restart gives the same bits */
 #define SPH_INTERNALS 14
 BY_EXTERN PetscErrorCode SPHGetInternals(SPH sph, PetscReal state[SPH_INTERNALS]);
 BY_EXTERN PetscErrorCode SPHSetInternals(SPH sph, const PetscReal state[SPH_INTERNALS]);
+/* volume [m^3] that has come in and gone out through openings since the start; buffers beyond them are outside */
+BY_EXTERN PetscErrorCode SPHGetVolumes(SPH sph, PetscReal *entered, PetscReal *left);
+/* the internals of openings, as many numbers as *n tells (0 without openings; state NULL: ask for n) */
+BY_EXTERN PetscErrorCode SPHGetFlows(SPH sph, PetscInt *n, PetscReal state[]);
+BY_EXTERN PetscErrorCode SPHSetFlows(SPH sph, PetscInt n, const PetscReal state[]);
 
 /* Shepard-normalised value at a point: pressure [Pa] and velocity [m/s]; *inside = PETSC_FALSE where no fluid is within h */
 BY_EXTERN PetscErrorCode SPHInterpolate(SPH sph, const PetscReal at[3], PetscReal *pressure, PetscReal velocity[3], PetscBool *inside);
@@ -179,6 +219,7 @@ typedef struct {
   PetscInt  iterations;            /* of the last pressure solve                                           */
   PetscBool converged;             /* of the last pressure solve                                           */
   PetscReal body_force[3];         /* of the mean-velocity controller [m/s^2]                              */
+  PetscInt  particles;             /* buffers of openings included                                         */
 } SPHStats;
 BY_EXTERN PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats);
 

@@ -250,10 +250,11 @@ PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
     stats->angular[k]    = m * first[5 + k];
     stats->body_force[k] = sph->body_force[k];
   }
-  stats->compression_mean = second[0] / n;
+  stats->particles        = n;
+  stats->compression_mean = second[0] / PetscMax(1, n);
   stats->compression_max  = most;
   stats->speed_max        = sqrt(fastest);
-  stats->speed_rms        = sqrt(first[0] / n);
+  stats->speed_rms        = sqrt(first[0] / PetscMax(1, n));
   stats->viscous_loss     = sph->viscous_loss;
   stats->wall_work        = sph->wall_work;
   stats->frame_work       = sph->frame_work;

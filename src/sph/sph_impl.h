@@ -66,6 +66,10 @@ typedef struct {
   PetscReal min[3], max[3]; /* [m], within the domain                                     */
   PetscReal area, force;    /* [m^2], [N] along the outward normal, of the last step      */
 } SPHPatch;
+/* what a particle is: its velocity or its pressure may be prescribed where water enters and leaves (sph_open.c) */
+enum { SPH_FREE, SPH_HELD = SPH_LOOPS_HELD, SPH_GIVEN };
+#define SPH_OPENINGS_MAX 100
+typedef struct _SPHOpening SPHOpening;
 
 /* of the compact operator and of corrected gradients (sph_isph.c, sph_shift.c); allocated when first used */
 typedef struct {
@@ -114,6 +118,7 @@ struct _p_SPH {
   PetscReal sound_speed;             /* [m/s] of wcsph, else 0                           */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
+  PetscReal flow_speed;              /* that the scene prescribes: mean velocity, openings [m/s] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
 
   /* state, sorted by cell then id */
@@ -122,6 +127,15 @@ struct _p_SPH {
   SPHArray   array[SPH_ARRAYS_MAX];
   PetscReal *x, *v, *p, *rho;        /* n x 3 [m], n x 3 [m/s], n [Pa], n [kg/m^3]       */
   PetscInt  *id;
+  PetscInt   next_id;                /* of the next particle that enters; ids are never used again */
+
+  /* openings; kind and opened_by only when there are any */
+  PetscInt       n_openings;
+  SPHOpening    *opening;
+  PetscBool      gives_pressure;     /* one of them gives a pressure that is not 0       */
+  PetscBool      packing;            /* nothing enters or leaves                         */
+  unsigned char *kind;               /* n, SPH_FREE, SPH_HELD, SPH_GIVEN                 */
+  signed char   *opened_by;          /* n, by which opening, or -1                       */
 
   /* of the current step */
   PetscReal *v_star;                 /* n x 3 [m/s] velocity before pressure             */
@@ -218,6 +232,19 @@ PETSC_INTERN void SPHPatchStop_Internal(SPH sph, int wall, int i, PetscReal forc
 
 /* sph_stop.c */
 PETSC_INTERN void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt);
+
+/* sph_open.c, sph_open_setup.c */
+PETSC_INTERN PetscErrorCode SPHOpenFromOptions_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHOpenSetUp_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHOpenDestroy_Internal(SPH sph);
+PETSC_INTERN PetscReal      SPHOpenSpeed_Internal(SPH sph);
+PETSC_INTERN PetscReal      SPHParticleVolume_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHExchange_Internal(SPH sph);
+PETSC_INTERN void           SPHOpenMark_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHOpenPredict_Internal(SPH sph, PetscReal dt);
+PETSC_INTERN void           SPHOpenHold_Internal(SPH sph);
+PETSC_INTERN void           SPHOpenPressure_Internal(SPH sph);
+PETSC_INTERN PetscReal      SPHOpenSolid_Internal(SPH sph, int side, const PetscReal x[3]);
 
 /* sph_viscosity.c */
 PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);

@@ -3,6 +3,7 @@
 #ifndef BY_SPH_LOOPS_H
 #define BY_SPH_LOOPS_H
 
+#define SPH_LOOPS_HELD 1   /* a particle whose velocity is prescribed */
 #define SPH_PAIR_CHUNK 256 /* particles whose neighbours share one slice of the list: the unit of work of a thread */
 
 #define SPH_IMAGES 7 /* mirrors of a particle: six planes and the nearest surface */
@@ -35,6 +36,7 @@ typedef struct {
   void         *pressure;    /* real, n: p~                                              */
   void         *vector;      /* real, 4 per particle: acceleration or velocity           */
   void         *wall;        /* real, 4 per particle: G_i [kg/m^4]                       */
+  const unsigned char *held; /* n, SPH_LOOPS_HELD where pressure moves nothing; or NULL  */
 } SPHLoops;
 
 /* forms of the viscous pair loop: the first two as SPHViscousForm; Monaghan's between pairs that approach */

@@ -20,7 +20,7 @@ PetscErrorCode SPHCheckState_Internal(SPH sph, const char when[])
     PetscReal        sign;
     int              wrong = !(isfinite(x[0] + x[1] + x[2]) && isfinite(v[0] + v[1] + v[2]));
 
-    for (int k = 0; k < 6; k++) wrong |= (sph->walls >> k & 1) && SPHPlaneDistance(sph, k, x, &sign) < -sph->h;
+    for (int k = 0; k < 6; k++) wrong |= (sph->walls >> k & 1) && SPHPlaneDistance(sph, k, x, &sign) < -sph->h && !(sph->n_openings && SPHOpenSolid_Internal(sph, k, x) < 0.9);
     if (wrong && i < bad) bad = i;
   }
   if (bad < n) {
@@ -188,10 +188,12 @@ PetscErrorCode SPHUpdateNeighbors(SPH sph)
   PetscFunctionBegin;
   PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
   PetscCall(PetscLogEventBegin(SPH_Neighbors, sph, 0, 0, 0));
+  if (sph->n_openings && !sph->packing) PetscCall(SPHExchange_Internal(sph));
   ByCall(SPHCheckState_Internal(sph, "before the neighbour search"));
   PetscCall(MakeGrid(sph));
   SortByCell(sph);
   Permute(sph);
+  if (sph->n_openings) SPHOpenMark_Internal(sph);
   sph->grid_drift = 0.0;
   l->x            = sph->x;
   if (l->capacity == 0) {

@@ -283,6 +283,10 @@ static void Acceleration(const SPHLoops *l)
       Vec4        s0 = {0}, s1 = {0}, s2 = {0}, s3 = {0};
       int         k = 0;
 
+      if (l->held && l->held[i] == SPH_LOOPS_HELD) {
+        Store4(a + 4 * (size_t)i, s0);
+        continue;
+      }
       for (; k + 4 <= n; k += 4, g += 12) {
         s0 += SPHPairPressure(pi, p[list[k]]) * Load4(g);
         s1 += SPHPairPressure(pi, p[list[k + 1]]) * Load4(g + 3);

@@ -52,7 +52,8 @@ void SPHPrepare_Internal(SPH sph, PetscReal dt, PetscReal warm)
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     // a particle that touches nothing has no pressure
-    const PetscReal root = sph->root[i] > tiny ? sqrt(sph->root[i]) : 0.0, S = root > 0 ? 1.0 / root : 0.0;
+    const PetscBool known = (PetscBool)(sph->kind && sph->kind[i] != SPH_FREE); // no unknown where velocity or pressure is prescribed
+    const PetscReal root = sph->root[i] > tiny && !known ? sqrt(sph->root[i]) : 0.0, S = root > 0 ? 1.0 / root : 0.0;
     const PetscReal excess = sph->rho[i] - rho0;
     const PetscReal b      = SPHSourceShare(excess / rho0, relax) * excess + dt * (sph->rate[i] - sph->wall_rate[i]);
 
@@ -147,6 +148,7 @@ PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, voi
   PetscCall(SPHWallRate_Internal(sph));
   sph->iterations = 0;
   ByCall(sph->method->Solve(sph, &op));
+  if (sph->n_openings) SPHOpenPressure_Internal(sph);
   ByCall(SPHCheckPressure_Internal(sph));
   PetscCall(SPHPlaneForces_Internal(sph));
   PetscCall(PetscLogEventEnd(SPH_Pressure, sph, 0, 0, 0));

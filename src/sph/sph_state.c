@@ -7,15 +7,15 @@
   SPHSetState - put a saved state in place of the current one
 
   Input Parameters:
-+ sph - the fluid, set up with the same number of particles
++ sph - the fluid, set up; without openings with the same number of particles
 . n   - number of particles
-. id  - their ids, a permutation of 0..n-1
+. id  - their ids, all different
 . x   - positions [m], n x 3
 . v   - velocities [m/s], n x 3
 - p   - pressures [Pa], n, from which the next solve starts
 
   Errors:
-  BY_ERR_INPUT when the number differs or the ids are no permutation: the file belongs to another scene
+  BY_ERR_INPUT when the number differs without openings, or an id is there twice: the file belongs to another scene
 
 .seealso: SPHGetInternals()
 @*/
@@ -23,12 +23,17 @@ PetscErrorCode SPHSetState(SPH sph, PetscInt n, const PetscInt id[], const Petsc
 {
   PetscFunctionBegin;
   PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
-  if (n != sph->n) PetscFunctionReturn(InputError("resume", "the saved state has %d fluid particles, the scene has %d", (int)n, (int)sph->n));
-  for (PetscInt i = 0; i < n; i++) sph->order[i] = -1;
+  if (n != sph->n && !sph->n_openings) PetscFunctionReturn(InputError("resume", "the saved state has %d fluid particles, the scene has %d", (int)n, (int)sph->n));
+  PetscCall(SPHReserve_Internal(sph, n));
+  PetscCall(PetscArraycpy(sph->order, id, n));
+  PetscCall(PetscSortInt(n, sph->order));
   for (PetscInt i = 0; i < n; i++) {
-    if (id[i] < 0 || id[i] >= n || sph->order[id[i]] >= 0) PetscFunctionReturn(InputError("resume", "the saved state is damaged: fluid particle id %d is impossible", (int)id[i]));
-    sph->order[id[i]] = i;
+    const PetscInt k = sph->order[i];
+    if (k < 0 || (!sph->n_openings && k >= n) || (i && k == sph->order[i - 1])) PetscFunctionReturn(InputError("resume", "the saved state is damaged: fluid particle id %d is impossible", (int)k));
+    sph->next_id = PetscMax(sph->next_id, k + 1);
   }
+  sph->n       = n;
+  sph->loops.n = (int)n;
   PetscCall(PetscArraycpy(sph->id, id, n));
   PetscCall(PetscArraycpy(sph->x, x, 3 * n));
   PetscCall(PetscArraycpy(sph->v, v, 3 * n));
@@ -149,6 +154,7 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
 
   PetscFunctionBegin;
   PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
+  sph->packing = PETSC_TRUE;
   for (PetscInt sweep = 0; sweep <= max_sweeps; sweep++) {
     ByCall(SPHUpdateNeighbors(sph));
     if (contacts) ByCall(contacts(ctx, sph));
@@ -164,6 +170,7 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
     sph->params.tolerance = tolerance;
     Displace(sph);
   }
+  sph->packing = PETSC_FALSE;
   PetscCall(PetscArrayzero(sph->p, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,7 +46,7 @@ void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt)
       for (int k = 0; k < 6; k++) {
         PetscReal sign, gap, lacking;
 
-        if (!(sph->walls >> k & 1)) continue;
+        if (!(sph->walls >> k & 1) || (sph->n_openings && SPHOpenSolid_Internal(sph, k, sph->x + 3 * i) < 0.5)) continue;
         gap     = SPHPlaneDistance(sph, k, sph->x + 3 * i, &sign);
         lacking = Lacking(sph, gap, sign * (sph->v[3 * i + k / 2] - sph->plane_velocity[3 * k + k / 2]), dt);
         sph->v[3 * i + k / 2] += sign * lacking;

@@ -48,7 +48,7 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
     *dt = par->time_step;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (Norm3(par->mean_velocity) > 0) step = PetscMin(step, 0.1 * sph->h / Norm3(par->mean_velocity));
+  if (sph->flow_speed > 0) step = PetscMin(step, 0.1 * sph->h / sph->flow_speed);
   if (speed > 0) step = PetscMin(step, par->cfl * par->spacing / speed);
   if (sph->accel_max > 0) step = PetscMin(step, 0.25 * sqrt(sph->h / sph->accel_max));
   if (nu > 0) step = PetscMin(step, 0.125 * sph->h * sph->h / nu);
@@ -118,6 +118,7 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
   if (sph->params.xsph > 0) PetscCall(SPHSmoothPredict_Internal(sph));
   if (sph->params.vorticity_confinement > 0) PetscCall(SPHConfinePredict_Internal(sph, dt));
   if (sph->method->Predict) PetscCall(sph->method->Predict(sph, dt));
+  if (sph->n_openings) PetscCall(SPHOpenPredict_Internal(sph, dt));
   if (!sph->method->ignores_rate) {
     sph->table->SetVelocity(&sph->loops, sph->v_star);
     sph->table->Rate(&sph->loops, 1.0, NULL, sph->rate);
@@ -148,6 +149,7 @@ PetscErrorCode SPHKick(SPH sph, PetscReal dt)
   if (sph->frame) SPHFrameWork_Internal(sph);
   if (sph->method->Accelerate) PetscCall(sph->method->Accelerate(sph, dt));
   else SPHPressureAcceleration_Internal(sph);
+  if (sph->n_openings) SPHOpenHold_Internal(sph);
 #pragma omp parallel for schedule(static) reduction(max : accel2)
   for (int i = 0; i < n; i++) {
     PetscReal a2 = 0.0;

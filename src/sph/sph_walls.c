@@ -23,6 +23,11 @@ static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal 
     phi[n]      = PetscMin(1.0, sph->wall_factor * SPHHalfSpace(sph->params.kernel, d, sph->h));
     slope[n]    = sign * sph->wall_factor * SPHHalfSpaceSlope(sph->gradient_kernel, d, sph->h);
     distance[n] = d;
+    if (sph->n_openings) {
+      const PetscReal solid = SPHOpenSolid_Internal(sph, k, x);
+      phi[n] *= solid;
+      slope[n] *= solid;
+    }
     n++;
   }
   return n;
