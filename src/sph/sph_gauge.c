@@ -223,7 +223,8 @@ PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
 
       for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
         const PetscReal *x = sph->x + 3 * i, *v = sph->v + 3 * i, *g = sph->gravity_now;
-        const PetscReal  v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], excess = PetscMax(0.0, sph->rho[i] / rho0 - 1.0);
+        const PetscReal  v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        const PetscReal  excess = sph->kind && sph->kind[i] != SPH_FREE ? 0.0 : PetscMax(0.0, sph->rho[i] / rho0 - 1.0); // beyond openings nothing looks after it
 
         if (pass == 1) {
           s[0] += excess;

@@ -6,9 +6,10 @@
    patch is water; at the far end of a column the next particle follows the last at the distance at which it brings its volume, so that the
    flow rate is the prescribed one to round-off, for as long as one likes.
 
-   Downstream of an outlet without a velocity the pressure is given (SPH_GIVEN) within a support: 0, or that of still water up to `level`.
-   Farther out, particles go on as they are, so that nothing nearer misses a neighbour, and after another support they are taken out. An outlet
-   with a velocity is an inlet turned round: its particles are held.
+   Downstream of an outlet without a velocity the pressure is given (SPH_GIVEN): 0, or that of still water up to `level`. Pressure and gravity
+   move these particles, friction does not: nothing would push them on against it. A support farther out they go on as they are, so
+   that nothing nearer misses a neighbour, and after another support they are taken out. An outlet with a velocity is an inlet turned round: its
+   particles are held.
 
    What a particle is follows from where it is: nothing but positions, counts and the next id needs to be saved. */
 #include <math.h>
@@ -128,9 +129,15 @@ PetscErrorCode SPHOpenPredict_Internal(SPH sph, PetscReal dt)
   const PetscReal to_tilde = 1.0 / PetscSqr(sph->params.density), t = sph->time + 0.5 * dt;
 
   PetscFunctionBegin;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < 3 && sph->kind[i] == SPH_GIVEN; k++) sph->v_star[3 * i + k] = sph->v[3 * i + k] + dt * sph->gravity[k];
   if (sph->gives_pressure) {
 #pragma omp parallel for schedule(static)
-    for (int i = 0; i < n; i++) sph->p_tilde[i] = sph->kind[i] == SPH_GIVEN ? to_tilde * GivenPressure(sph, &sph->opening[sph->opened_by[i]], sph->x + 3 * i) : 0.0;
+    for (int i = 0; i < n; i++) {
+      const SPHOpening *o = sph->kind[i] == SPH_FREE ? NULL : &sph->opening[sph->opened_by[i]];
+      sph->p_tilde[i]     = o && !o->inlet && o->velocity < 0 ? to_tilde * GivenPressure(sph, o, sph->x + 3 * i) : 0.0;
+    }
     sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
     sph->table->Acceleration(&sph->loops);
     sph->table->GetVector(&sph->loops, sph->accel);
