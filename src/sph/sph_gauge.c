@@ -3,9 +3,6 @@
 
 #include "sph_impl.h"
 
-/* sums of one particle into a gauge */
-typedef void (*Visit)(SPH sph, int i, const PetscReal d[3], void *ctx);
-
 /* displacement from x to particle i, through the nearest periodic image */
 static void Displacement(SPH sph, int i, const PetscReal at[3], PetscReal d[3])
 {
@@ -17,7 +14,7 @@ static void Displacement(SPH sph, int i, const PetscReal at[3], PetscReal d[3])
 }
 
 /* visit the particles of all cells that overlap the box at +- reach; particles may have moved by grid_drift since they were sorted */
-static void VisitBox(SPH sph, const PetscReal at[3], const PetscReal reach[3], Visit visit, void *ctx)
+void SPHVisitBox_Internal(SPH sph, const PetscReal at[3], const PetscReal reach[3], SPHVisit visit, void *ctx)
 {
   const SPHGrid *g = &sph->loops.grid;
   int            lo[3], hi[3];
@@ -81,7 +78,7 @@ PetscErrorCode SPHInterpolate(SPH sph, const PetscReal at[3], PetscReal *pressur
 
   PetscFunctionBegin;
   PetscCheck(sph->loops.capacity > 0, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHUpdateNeighbors() comes first");
-  VisitBox(sph, at, reach, AddPoint, &s);
+  SPHVisitBox_Internal(sph, at, reach, AddPoint, &s);
   *inside   = (PetscBool)(s.weight > 0);
   *pressure = s.weight > 0 ? s.pressure / s.weight : 0.0;
   for (int k = 0; k < 3; k++) velocity[k] = s.weight > 0 ? s.velocity[k] / s.weight : 0.0;
@@ -132,7 +129,7 @@ PetscErrorCode SPHGetHeight(SPH sph, const PetscReal at[3], PetscReal *height)
   PetscFunctionBegin;
   PetscCheck(sph->loops.capacity > 0, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHUpdateNeighbors() comes first");
   reach[axis] = (sph->loops.grid.n[axis] + 2) * sph->loops.grid.cell[axis] + PetscAbsReal(at[axis] - sph->loops.grid.lo[axis]);
-  VisitBox(sph, at, reach, AddColumn, &s);
+  SPHVisitBox_Internal(sph, at, reach, AddColumn, &s);
 
   // integral of the weight over the part of the cross-section that is in the domain, by the midpoint rule on m x m squares
   for (int b = 0; b < m; b++) {
@@ -161,7 +158,7 @@ static PetscReal FullPart(SPH sph, const PetscReal at[3], int floor_plane)
   const PetscReal reach[3] = {sph->h, sph->h, sph->h};
   PetscReal       sum = 0.0, open = 1.0, below = 0.0;
 
-  VisitBox(sph, at, reach, AddPart, &sum);
+  SPHVisitBox_Internal(sph, at, reach, AddPart, &sum);
   for (int k = 0; k < 6; k++) {
     PetscReal sign, part;
 

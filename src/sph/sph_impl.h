@@ -233,6 +233,10 @@ PETSC_INTERN void SPHPatchStop_Internal(SPH sph, int wall, int i, PetscReal forc
 /* sph_stop.c */
 PETSC_INTERN void SPHStopAtPlanes_Internal(SPH sph, PetscReal dt);
 
+/* sph_gauge.c: visit(sph, particle, displacement of its nearest image from `at`, ctx) for all particles of the cells in a box of +- reach */
+typedef void (*SPHVisit)(SPH sph, int i, const PetscReal d[3], void *ctx);
+PETSC_INTERN void SPHVisitBox_Internal(SPH sph, const PetscReal at[3], const PetscReal reach[3], SPHVisit visit, void *ctx);
+
 /* sph_open.c, sph_open_setup.c */
 PETSC_INTERN PetscErrorCode SPHOpenFromOptions_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHOpenSetUp_Internal(SPH sph);
@@ -240,6 +244,7 @@ PETSC_INTERN PetscErrorCode SPHOpenDestroy_Internal(SPH sph);
 PETSC_INTERN PetscReal      SPHOpenSpeed_Internal(SPH sph);
 PETSC_INTERN PetscReal      SPHParticleVolume_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHExchange_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHOpenMirror_Internal(SPH sph);
 PETSC_INTERN void           SPHOpenMark_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHOpenPredict_Internal(SPH sph, PetscReal dt);
 PETSC_INTERN void           SPHOpenHold_Internal(SPH sph);

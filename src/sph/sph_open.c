@@ -6,10 +6,10 @@
    patch is water; at the far end of a column the next particle follows the last at the distance at which it brings its volume, so that the
    flow rate is the prescribed one to round-off, for as long as one likes.
 
-   Downstream of an outlet without a velocity the pressure is given (SPH_GIVEN): 0, or that of still water up to `level`. Pressure and gravity
-   move these particles, friction does not: nothing would push them on against it. A support farther out they go on as they are, so
-   that nothing nearer misses a neighbour, and after another support they are taken out. An outlet with a velocity is an inlet turned round: its
-   particles are held.
+   Downstream of an outlet without a velocity the pressure is given (SPH_GIVEN): 0, or that of still water up to `level`. In the pressure
+   equation these particles give way like water, so that the flow is free to change; between steps they take the velocity that the water has
+   before the outlet, so that they stay as dense as it is and hold the pressure. A support farther out they are held, so that nothing nearer
+   misses a neighbour, and after another they are taken out. An outlet with a velocity is an inlet turned round: its particles are held.
 
    What a particle is follows from where it is: nothing but positions, counts and the next id needs to be saved. */
 #include <math.h>
@@ -122,7 +122,35 @@ static PetscReal GivenPressure(SPH sph, const SPHOpening *o, const PetscReal x[3
   return o->pressure + PetscMax(0.0, sph->params.density * (g * o->level + Dot3(sph->gravity, x)));
 }
 
-/* v* of held particles, and what a given pressure does to its neighbours; the end of SPHPredict() but for the density rate */
+typedef struct {
+  PetscReal weight, velocity[3];
+} Mean;
+
+static void AddFree(SPH sph, int i, const PetscReal d[3], void *ctx)
+{
+  Mean           *m = (Mean *)ctx;
+  const PetscReal w = SPHKernelW(sph->params.kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), sph->h);
+
+  if (sph->kind[i] != SPH_FREE) return;
+  m->weight += w;
+  for (int k = 0; k < 3; k++) m->velocity[k] += w * sph->v[3 * i + k];
+}
+
+/* v* beyond an outlet: the mean velocity of the water half a support before it, never inward; where there is none, the particle's own */
+static void Continue(SPH sph, const SPHOpening *o, int i, PetscReal s, PetscReal dt)
+{
+  const PetscReal reach[3] = {sph->h, sph->h, sph->h};
+  PetscReal      *v = sph->v_star + 3 * i, at[3], inward;
+  Mean            m = {0, {0, 0, 0}};
+
+  for (int k = 0; k < 3; k++) at[k] = sph->x[3 * i + k] - (s + 0.5 * sph->h) * o->n[k];
+  SPHVisitBox_Internal(sph, at, reach, AddFree, &m);
+  for (int k = 0; k < 3; k++) v[k] = m.weight > 0 ? m.velocity[k] / m.weight : sph->v[3 * i + k];
+  inward = PetscMin(0.0, Dot3(v, o->n));
+  for (int k = 0; k < 3; k++) v[k] += (sph->kind[i] == SPH_GIVEN && o->has_level ? dt * sph->gravity[k] : 0.0) - inward * o->n[k];
+}
+
+/* v* of particles beyond openings, and what a given pressure does to its neighbours; the end of SPHPredict() but for the density rate */
 PetscErrorCode SPHOpenPredict_Internal(SPH sph, PetscReal dt)
 {
   const int       n        = (int)sph->n;
@@ -130,30 +158,27 @@ PetscErrorCode SPHOpenPredict_Internal(SPH sph, PetscReal dt)
 
   PetscFunctionBegin;
 #pragma omp parallel for schedule(static)
-  for (int i = 0; i < n; i++)
-    for (int k = 0; k < 3 && sph->kind[i] == SPH_GIVEN; k++) sph->v_star[3 * i + k] = sph->v[3 * i + k] + dt * sph->gravity[k];
-  if (sph->gives_pressure) {
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < n; i++) {
-      const SPHOpening *o = sph->kind[i] == SPH_FREE ? NULL : &sph->opening[sph->opened_by[i]];
-      sph->p_tilde[i]     = o && !o->inlet && o->velocity < 0 ? to_tilde * GivenPressure(sph, o, sph->x + 3 * i) : 0.0;
-    }
-    sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
-    sph->table->Acceleration(&sph->loops);
-    sph->table->GetVector(&sph->loops, sph->accel);
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < 3 * n; i++) sph->v_star[i] += dt * sph->accel[i];
-  }
-#pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
     PetscReal s, ab[2];
 
-    if (sph->kind[i] != SPH_HELD) continue;
+    sph->p_tilde[i] = 0.0;
+    if (sph->kind[i] == SPH_FREE) continue;
     const SPHOpening *o = &sph->opening[sph->opened_by[i]];
     Locate(sph, o, sph->x + 3 * i, &s, ab);
-    const PetscReal speed = o->velocity >= 0 ? Speed(o, ab, t) : PetscMax(0.0, Dot3(sph->v + 3 * i, o->n)), along = Dot3(sph->v + 3 * i, o->n);
-    for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = speed * o->n[k] + (o->velocity >= 0 ? 0.0 : sph->v[3 * i + k] - along * o->n[k]);
+    if (o->velocity < 0) {
+      Continue(sph, o, i, s, dt);
+      sph->p_tilde[i] = to_tilde * GivenPressure(sph, o, sph->x + 3 * i);
+    } else {
+      const PetscReal speed = Speed(o, ab, t);
+      for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = speed * o->n[k];
+    }
   }
+  if (!sph->gives_pressure) PetscFunctionReturn(PETSC_SUCCESS);
+  sph->table->SetPressure(&sph->loops, sph->p_tilde, NULL);
+  sph->table->Acceleration(&sph->loops);
+  sph->table->GetVector(&sph->loops, sph->accel);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < 3 * n; i++) sph->v_star[i] += dt * sph->accel[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,6 +276,34 @@ static PetscErrorCode Fill(SPH sph, SPHOpening *o)
     while (o->last[c] - o->step >= -o->length && (o->volume <= 0 || (o->count + 1) * volume <= o->volume * (1.0 + 1e-9))) {
       o->last[c] -= o->step;
       PetscCall(Create(sph, o, o->last[c], o->column + 2 * c));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* at the start: water before an outlet is mirrored to behind it */
+PetscErrorCode SPHOpenMirror_Internal(SPH sph)
+{
+  const PetscInt n = sph->n;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < sph->n_openings; k++) {
+    SPHOpening *o = &sph->opening[k];
+
+    for (PetscInt i = 0; i < n && !o->inlet; i++) {
+      PetscReal s, ab[2];
+
+      Locate(sph, o, sph->x + 3 * i, &s, ab);
+      if (s > 0 || s < -(o->velocity >= 0 ? 1.0 : 2.0) * o->length || !Within(o, ab)) continue;
+      PetscCall(SPHReserve_Internal(sph, sph->n + 1));
+      for (int q = 0; q < 3; q++) {
+        sph->x[3 * sph->n + q] = sph->x[3 * i + q] - 2.0 * s * o->n[q];
+        sph->v[3 * sph->n + q] = sph->v[3 * i + q];
+      }
+      sph->p[sph->n]    = 0.0;
+      sph->rho[sph->n]  = sph->params.density;
+      sph->id[sph->n++] = sph->next_id++;
+      o->count--; // has not gone through
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -279,6 +279,7 @@ PetscErrorCode SPHOpenSetUp_Internal(SPH sph)
     if (sph->opening[k].inlet) PetscCall(MakeColumns(sph, &sph->opening[k]));
     else sph->opening[k].length = sph->h + sph->params.spacing;
   }
+  PetscCall(SPHOpenMirror_Internal(sph));
   PetscCall(SPHExchange_Internal(sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
