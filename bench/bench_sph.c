@@ -238,6 +238,9 @@ static PetscErrorCode Report(const Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* JSON has no numbers that are none */
+static double Finite(PetscReal x) { return isfinite(x) ? (double)x : 1e300; }
+
 /* everything as JSON, for reports */
 static PetscErrorCode WriteJSON(const Run *run, const char path[])
 {
@@ -246,18 +249,18 @@ static PetscErrorCode WriteJSON(const Run *run, const char path[])
   PetscFunctionBegin;
   PetscCheck(file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s", path);
   fprintf(file, "{\"particles\": %d, \"steps\": %d, \"time\": %.9g, \"seconds\": %.6g, \"dt_min\": %.9g, \"iterations\": %.6g, \"worst\": %d, \"not_converged\": %d,\n", (int)run->n, (int)run->n_steps,
-          (double)run->time, (double)Seconds(run), (double)run->dt_min, (double)(run->iterations / PetscMax(1, run->n_steps)), (int)run->worst, (int)run->not_converged);
+          (double)run->time, (double)Seconds(run), Finite(run->dt_min), (double)(run->iterations / PetscMax(1, run->n_steps)), (int)run->worst, (int)run->not_converged);
   fprintf(file, " \"stopped\": \"%s\", \"deepest\": %.6g, \"energy_left\": %.6g, \"weight\": %.9g, \"energy\": %.9g, \"compression_peak\": %.6g, \"compression_top\": %.6g,\n", run->ierr ? run->reason : "",
-          (double)(run->deepest / run->dx), (double)run->energy_left, (double)Weight(run), (double)run->energy, (double)run->compression_peak, (double)run->compression_top);
+          Finite(run->deepest / run->dx), Finite(run->energy_left), Finite(Weight(run)), Finite(run->energy), Finite(run->compression_peak), Finite(run->compression_top));
   if (run->n_measured) {
-    fprintf(file, " \"gauge_error\": [%.6g, %.6g, %.6g], \"force\": %.9g, \"force_noise\": %.6g, \"offset\": %.6g, \"compression\": %.6g, \"speed_rms\": %.6g,\n", (double)GaugeError(run, 0, PETSC_FALSE),
-            (double)GaugeError(run, 1, PETSC_FALSE), (double)GaugeError(run, 2, PETSC_FALSE), (double)(run->force_sum / run->n_measured / Weight(run)), (double)ForceNoise(run),
-            (double)((run->height_sum / run->n_measured - 0.5 * run->depth) / run->dx), (double)(run->compression / run->n_measured), (double)(run->stats.speed_rms / sqrt(run->g * run->depth)));
+    fprintf(file, " \"gauge_error\": [%.6g, %.6g, %.6g], \"force\": %.9g, \"force_noise\": %.6g, \"offset\": %.6g, \"compression\": %.6g, \"speed_rms\": %.6g,\n", Finite(GaugeError(run, 0, PETSC_FALSE)),
+            Finite(GaugeError(run, 1, PETSC_FALSE)), Finite(GaugeError(run, 2, PETSC_FALSE)), Finite(run->force_sum / run->n_measured / Weight(run)), Finite(ForceNoise(run)),
+            Finite((run->height_sum / run->n_measured - 0.5 * run->depth) / run->dx), Finite(run->compression / run->n_measured), Finite(run->stats.speed_rms / sqrt(run->g * run->depth)));
   }
   for (int k = 0; k < N_PHASES; k++) fprintf(file, " \"%s\": %.6g,\n", PhaseNames[k], (double)run->phase[k]);
   for (int q = 0; q < N_SERIES; q++) {
     fprintf(file, " \"%s\": [", q == TIME ? "times" : SeriesNames[q]);
-    for (PetscInt k = 0; k < run->n_samples; k++) fprintf(file, "%s%.7g", k ? ", " : "", (double)run->series[k][q]);
+    for (PetscInt k = 0; k < run->n_samples; k++) fprintf(file, "%s%.7g", k ? ", " : "", Finite(run->series[k][q]));
     fprintf(file, "]%s\n", q + 1 < N_SERIES ? "," : "}");
   }
   PetscCheck(!fclose(file), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s", path);
@@ -360,7 +363,7 @@ static PetscErrorCode RunCase(const Case *c, Run *run)
   PetscCall(SPHGetBreakdown(sph, &reason));
   PetscCall(PetscStrncpy(run->reason, run->ierr == BY_ERR_INPUT ? "refused" : reason ? reason : "", sizeof(run->reason)));
   run->force_sum   = -run->force_sum;
-  run->energy_left = (run->stats.kinetic + run->stats.potential) / run->energy;
+  run->energy_left = run->energy > 0 ? (run->stats.kinetic + run->stats.potential) / run->energy : 1.0;
   PetscCall(SPHDestroy(&sph));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,8 +13,11 @@ import sys
 
 sys.dont_write_bytecode = True
 
+import fluid_claims
 import fluid_free
+import fluid_hard
 import fluid_marin
+import fluid_speed
 import fluid_still
 from sections import main
 
@@ -23,6 +26,9 @@ SECTIONS = (
     ("drop", "A stretching drop", fluid_free.drop),
     ("column", "A collapsing column", fluid_free.column),
     ("marin", "A dam break against a box", fluid_marin.marin),
+    ("hard", "Hard cases", fluid_hard.hard),
+    ("speed", "Speed against error", fluid_speed.speed),
+    ("claims", "What the sources say of speed", fluid_claims.claims),
 )
 
 HEAD = """# The fluid against what is known
