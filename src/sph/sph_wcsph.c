@@ -11,6 +11,8 @@
 #include "sph_eos.h"
 #include "sph_impl.h"
 
+#define MOST_DENSE 3.0 /* times rest density: Tait's pressure is there 2,300 times that of a tenth more than rest */
+
 /* v0 and H of SPHSoundSpeed(): H from the highest particle down to the lowest corner of the domain, or to the lowest particle without one */
 static void FindScales(SPH sph, PetscReal *v0, PetscReal *H)
 {
@@ -70,13 +72,22 @@ static PetscErrorCode Solve(SPH sph, const SPHOperator *op)
 {
   const int       n    = (int)sph->n;
   const PetscReal rho0 = sph->params.density, gamma = sph->params.gamma;
+  int             bad  = n;
 
   PetscFunctionBegin;
   (void)op;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) reduction(min : bad)
   for (int i = 0; i < n; i++) {
     const PetscReal p = SPHTait(sph->rho[i], rho0, sph->sound_speed, gamma);
     sph->p[i]         = sph->params.free_surface && p < 0 ? 0.0 : p;
+    if (gamma > 1 && sph->rho[i] > MOST_DENSE * rho0 && i < bad) bad = i;
+  }
+  if (bad < n) {
+    const PetscReal *x = sph->x + 3 * bad;
+    PetscCall(PetscSNPrintf(sph->breakdown, sizeof(sph->breakdown),
+                            "step %d, pressure: fluid particle %d at (%g, %g, %g) m is compressed to %.3g times rest density, where the state equation of wcsph explodes: start without compression or take a higher sph.sound_speed",
+                            (int)sph->step, (int)sph->id[bad], (double)x[0], (double)x[1], (double)x[2], (double)(sph->rho[bad] / rho0)));
+    PetscFunctionReturn(BY_ERR_BREAKDOWN);
   }
   sph->converged = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
