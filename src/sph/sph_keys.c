@@ -37,7 +37,7 @@ const Key SPHKeys[] = {
   {"pbf_warm_start", KEY_REAL, FIELD(pbf_warm_start), "1", "0.5", 0, 1, 0, NULL, "part of the last pressure that pbf starts from; its paper: 0"},
   {"pbf_relaxation", KEY_REAL, FIELD(pbf_relaxation), "1", "1", 0, 1e3, 0, NULL, "relaxation epsilon of pbf over the sum of squared gradients in a full lattice"},
   {"artificial_pressure", KEY_REAL, FIELD(artificial_pressure), "1", "0", 0, 10, 0, NULL, "strength k of pbf's artificial pressure over that of a density twice too high"},
-  {"artificial_pressure_distance", KEY_REAL, FIELD(artificial_pressure_distance), "1", "0.2", 0, 1, KEY_HI_OPEN, NULL, "distance |delta q| of it over the support"},
+  {"artificial_pressure_distance", KEY_REAL, FIELD(artificial_pressure_distance), "1", "0.2", 0, 1, KEY_HI_OPEN, NULL, "distance of the pair at which it is k, over the support"},
   {"artificial_pressure_exponent", KEY_REAL, FIELD(artificial_pressure_exponent), "1", "4", 0, 20, 0, NULL, "exponent n of it"},
   {"xsph", KEY_REAL, FIELD(xsph), "1", "0", 0, 1, 0, NULL, "part of the difference to its neighbours' mean velocity that a particle loses in a step (XSPH; 0.01 with pbf in its paper)"},
   {"vorticity_confinement", KEY_REAL, FIELD(vorticity_confinement), "m/s", "0", 0, 1e3, 0, NULL, "force of vorticity confinement per mass and vorticity"},

@@ -313,7 +313,7 @@ void SPHAddWallDensity_Internal(SPH sph, PetscReal dt, const PetscReal x[], Pets
 PetscErrorCode SPHPlaneForces_Internal(SPH sph)
 {
   const int       n      = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
-  const PetscReal rho0   = sph->params.density, nu = sph->params.viscosity / rho0, to_tilde = 1.0 / (rho0 * rho0);
+  const PetscReal rho0   = sph->params.density, nu = sph->params.viscosity / rho0;
 
   PetscReal       pressure[6];
   const PetscBool of_solver = (PetscBool)(sph->method->PlaneForces != NULL);

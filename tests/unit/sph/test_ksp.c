@@ -18,6 +18,7 @@ static void Solve(const char option[], const char type[], PetscReal tolerance, P
   sph->params.tolerance      = tolerance;
   sph->params.max_iterations = 100000;
   sph->params.free_surface   = free_surface;
+  sph->params.solver         = SPH_SOLVER_IISPH;
   assert_petsc(SPHSetDomain(sph, lo, hi, 31, 0));
   assert_petsc(SPHSetGravity(sph, g));
   AddLattice(sph, 5, 5, 8, dx, 0.1, NULL);

@@ -25,7 +25,7 @@ static const Row Rows[] = {
   {"iisph_jacobi",      SPH_SOLVER_IISPH_JACOBI, 0, 0, 7, 0.02, 0.05, 0.15, 1e-12},
   {"pcisph",            SPH_SOLVER_PCISPH,       0, 0, 7, 0.02, 0.05, 0.15, 1e-12},
   {"wcsph",             SPH_SOLVER_WCSPH,        0, 0, 7, 0.02, 0.05, 0.15, 1e-12},
-  {"wcsph, gamma 1",    SPH_SOLVER_WCSPH,        SPH_POLY6, 1 + SPH_SPIKY, 1, 0.02, 0.05, 0.15, 1e-12},
+  {"wcsph, gamma 1",    SPH_SOLVER_WCSPH,        SPH_POLY6, 1 + SPH_SPIKY, 1, 0.06, 0.05, 0.15, 1e-12},
 };
 #define N_ROWS (int)(sizeof(Rows)/sizeof(*Rows))
 
