@@ -224,7 +224,7 @@ PETSC_INTERN PetscReal SPHFastestPlane_Internal(SPH sph);
 PETSC_INTERN PetscReal SPHFrameAcceleration_Internal(SPH sph);
 PETSC_INTERN void      SPHFramePredict_Internal(SPH sph, PetscReal dt, PetscReal gravity[3]);
 PETSC_INTERN void      SPHFrameWork_Internal(SPH sph);
-PETSC_INTERN void      SPHTick_Internal(SPH sph, PetscReal dt);
+PETSC_INTERN PetscErrorCode SPHTick_Internal(SPH sph, PetscReal dt);
 
 /* sph_patch.c */
 PETSC_INTERN void SPHPatchForces_Internal(SPH sph);

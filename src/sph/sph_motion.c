@@ -4,6 +4,10 @@
 
 #include "sph_impl.h"
 
+/* [dx] Nearer than this no two walls close on water: two layers stand 0.2 dx off their walls and 0.9 dx from each other. Measured: water pressed out
+   between two plates keeps its energy balance within 3 % down to 1.4 dx, at 1.2 dx its layers have no place and it is shot out. */
+#define SPH_CLOSED_GAP 1.5
+
 /* put planes and gravity where they are at the fluid's time */
 void SPHPlace_Internal(SPH sph)
 {
@@ -162,16 +166,35 @@ void SPHFrameWork_Internal(SPH sph)
   sph->frame_work += 0.5 * sph->mass * work;
 }
 
+/* walls that close on each other end the run where nothing fits between them */
+static PetscErrorCode CheckGaps(SPH sph)
+{
+  static const char axis[] = "xyz";
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) {
+    const PetscReal gap = sph->plane[2 * k + 1] - sph->plane[2 * k], least = SPH_CLOSED_GAP * sph->params.spacing;
+
+    if ((sph->walls >> (2 * k) & 3) != 3 || !(sph->motion[2 * k] || sph->motion[2 * k + 1]) || gap >= least) continue;
+    PetscCall(PetscSNPrintf(sph->breakdown, sizeof(sph->breakdown), "step %d: the walls %cmin and %cmax have closed to %g m, less than %g spacings: no two layers of particles fit between them\n"
+                            "end the motion earlier, or take a smaller sph.spacing", (int)sph->step, axis[k], axis[k], (double)gap, SPH_CLOSED_GAP));
+    PetscFunctionReturn(BY_ERR_BREAKDOWN);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* the clock goes on, before positions do; gravity that turns does work on the potential energy as it is seen from the tank */
-void SPHTick_Internal(SPH sph, PetscReal dt)
+PetscErrorCode SPHTick_Internal(SPH sph, PetscReal dt)
 {
   const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
   PetscReal before[3], sums[3];
 
+  PetscFunctionBegin;
   for (int k = 0; k < 3; k++) before[k] = sph->gravity_now[k];
   sph->time += dt;
   SPHPlace_Internal(sph);
-  if (!sph->frame) return;
+  ByCall(CheckGaps(sph));
+  if (!sph->frame) PetscFunctionReturn(PETSC_SUCCESS);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < chunks; c++) {
     PetscReal s[3] = {0, 0, 0};
@@ -181,4 +204,5 @@ void SPHTick_Internal(SPH sph, PetscReal dt)
   }
   SPHSumPartials(sph, 3, sums);
   for (int k = 0; k < 3; k++) sph->frame_work -= sph->mass * (sph->gravity_now[k] - before[k]) * sums[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -231,7 +231,7 @@ PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
   if (sph->shifting > 0) PetscCall(SPHShift_Internal(sph, dt));
-  SPHTick_Internal(sph, dt);
+  ByCall(SPHTick_Internal(sph, dt));
   if (sph->method->Drift) PetscCall(sph->method->Drift(sph, dt, &path));
   else Drift(sph, dt, &path);
 #pragma omp parallel for schedule(static)

@@ -3,7 +3,9 @@
    Union of planes k and surfaces s:  1 - phi_i = prod_k (1 - phi_ik) prod_s (1 - phi_is)
      grad phi_i = sum_k c_ik grad phi_ik,  c_ik = product of (1 - phi) over all the others
    Planes of one axis have no part of the kernel in common, so that theirs add: prod_k over planes is prod over axes (1 - phi_min - phi_max).
-   The pressure solve thus sees one vector G_i = rho0 grad phi_i, whatever there is around. */
+   Between axes the product errs by up to 0.0016 at an edge and 0.0042 in a corner (against the true volume beyond two or three planes), which
+   moves the wetted surface there by 0.003 and 0.008 dx: less than its scatter. The pressure solve thus sees one vector G_i = rho0 grad phi_i,
+   whatever there is around. */
 #include <math.h>
 
 #include "sph_impl.h"
