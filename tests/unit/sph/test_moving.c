@@ -2,6 +2,8 @@
 #include "fluid.h"
 #include "mat3.h"
 
+#include <string.h>
+
 #include "sph/sph_impl.h"
 
 static Motion MakeMotion(int kind, PetscReal duration, const PetscReal translation[3], PetscReal degrees, const PetscReal axis[3])
@@ -184,5 +186,58 @@ static void FloorDragsWhatDoesNotSlip(void **state)
   }
 }
 
+/* Water pressed where there is no room for it ends the run, and the message says why: between two plates that close on each other, open at the
+   sides, and under the lid of a full box. */
+static void PressedWaterEndsTheRunWithTheReason(void **state)
+{
+  const PetscReal lo[3] = {0, 0, 0}, hi[3] = {0.04, 0.04, 0.04}, down[3] = {0, 0, -0.04};
+
+  (void)state;
+  for (int box = 0; box < 2; box++) {
+    SPH            sph = NewFluid(0.01);
+    Motion         lid = MakeMotion(COURSE_LINEAR, 0.04, down, 0.0, NULL);
+    PetscErrorCode ierr = 0;
+
+    assert_petsc(SPHSetDomain(sph, lo, hi, box ? 63 : 48, 0));
+    assert_petsc(SPHSetWallMotion(sph, 32, &lid));
+    AddLattice(sph, 4, 4, 4, 0.01, 0.01, NULL);
+    assert_petsc(SPHSetUp(sph));
+    for (int s = 0; s < 2000 && !ierr; s++) {
+      PetscReal dt;
+
+      assert_petsc(SPHUpdateNeighbors(sph));
+      assert_petsc(SPHGetTimeStep(sph, &dt));
+      assert_petsc(SPHPredict(sph, dt));
+      ierr = SPHSolvePressure(sph, dt, NULL, NULL);
+      if (!ierr) ierr = SPHAdvance(sph, dt);
+    }
+    assert_int_equal((int)ierr, (int)BY_ERR_BREAKDOWN);
+    assert_non_null(strstr(sph->breakdown, box ? "has no room" : "closed to"));
+    assert_petsc(SPHDestroy(&sph));
+  }
+}
+
+/* A tank that has always been accelerated sideways is one in which gravity is tilted: the same particles at the same places. */
+static void AcceleratedTankIsTiltedGravity(void **state)
+{
+  const PetscReal a = 2.0, dt = 1e-3, along[3] = {0.5 * a, 0.0, 0.0}, tilted[3] = {-a, 0.0, -9.81};
+  Motion          push = MakeMotion(COURSE_QUADRATIC, 1.0, along, 0.0, NULL);
+  SPH             frame = PushedTank(NULL, &push), still = PushedTank(NULL, NULL);
+
+  (void)state;
+  push.course.start = -1.0;
+  assert_petsc(SPHSetGravity(still, tilted));
+  still->filter_rate = frame->filter_rate; // both of gravity as the laboratory has it
+  still->relax_time  = frame->relax_time;
+  for (int s = 0; s < 20; s++) {
+    OneStep(frame, dt);
+    OneStep(still, dt);
+    for (int k = 0; k < 18; k++) assert_close(frame->wall_force[k], still->wall_force[k], 1e-6, Total(still) * 9.81);
+  }
+  assert_petsc(SPHDestroy(&frame));
+  assert_petsc(SPHDestroy(&still));
+}
+
 CHECK_MAIN(cmocka_unit_test(PistonPushesColumnRigidly), cmocka_unit_test(FreeParticleGoesStraightInTheLaboratory),
-           cmocka_unit_test(FrameAndMovingWallsGiveTheSameForces), cmocka_unit_test(PlanesOfOneAxisAdd), cmocka_unit_test(FloorDragsWhatDoesNotSlip))
+           cmocka_unit_test(FrameAndMovingWallsGiveTheSameForces), cmocka_unit_test(PlanesOfOneAxisAdd), cmocka_unit_test(FloorDragsWhatDoesNotSlip),
+           cmocka_unit_test(PressedWaterEndsTheRunWithTheReason), cmocka_unit_test(AcceleratedTankIsTiltedGravity))
