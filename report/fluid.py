@@ -19,10 +19,13 @@ import fluid_hard
 import fluid_marin
 import fluid_speed
 import fluid_still
+import fluid_waves
 from sections import main
 
 SECTIONS = (
     ("still", "Still water in a tank", fluid_still.still),
+    ("wave_maker", "Waves of a piston", fluid_waves.wave_maker),
+    ("moving_tank", "Water in tanks that move", fluid_waves.moving_tank),
     ("drop", "A stretching drop", fluid_free.drop),
     ("column", "A collapsing column", fluid_free.column),
     ("marin", "A dam break against a box", fluid_marin.marin),
