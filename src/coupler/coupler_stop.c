@@ -16,6 +16,36 @@ typedef struct {
   PetscInt        *triangle;
 } Near;
 
+/* In a periodic domain the image of a particle that touches proxies need not be the one that is nearest to the triangles: where a surface spans the
+   domain, the particle itself may be. Take that one where it is nearer. */
+static PetscErrorCode TryParticles(Near *near, const SPHContacts *q, const PetscReal x[], const PetscReal v[], PetscReal dt, PetscReal reach)
+{
+  PetscInt   n = 0, *which, *triangle;
+  PetscReal *at, *distance, *weights;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc5(near->n, &which, near->n, &triangle, 3 * near->n, &at, near->n, &distance, 3 * near->n, &weights));
+  for (PetscInt t = 0; t < near->n; t++) {
+    const PetscInt i = 3 * q->particle[t];
+
+    if (x[i] == q->position[3 * t] && x[i + 1] == q->position[3 * t + 1] && x[i + 2] == q->position[3 * t + 2]) continue;
+    for (int k = 0; k < 3; k++) at[3 * n + k] = x[i + k] + dt * v[i + k];
+    which[n++] = t;
+  }
+  if (n) PetscCall(SurfaceClosest(n, at, near->x, near->n_triangles, near->triangles, reach, distance, triangle, weights));
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt t = which[j];
+
+    if (triangle[j] < 0 || (near->triangle[t] >= 0 && near->distance[t] <= distance[j])) continue;
+    near->triangle[t] = triangle[j];
+    near->distance[t] = distance[j];
+    PetscCall(PetscArraycpy(near->at + 3 * t, at + 3 * j, 3));
+    PetscCall(PetscArraycpy(near->weights + 3 * t, weights + 3 * j, 3));
+  }
+  PetscCall(PetscFree5(which, triangle, at, distance, weights));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* the touched particles of surface k where they would end, and the closest triangles */
 static PetscErrorCode FindNear(Coupler c, PetscInt k, PetscReal dt, Near *near)
 {
@@ -41,6 +71,7 @@ static PetscErrorCode FindNear(Coupler c, PetscInt k, PetscReal dt, Near *near)
     for (int i = 0; i < 3; i++) near->at[3 * t + i] = q->position[3 * t + i] + dt * v[3 * q->particle[t] + i];
   }
   PetscCall(SurfaceClosest(near->n, near->at, near->x, near->n_triangles, near->triangles, 0.5 * params->spacing, near->distance, near->triangle, near->weights));
+  PetscCall(TryParticles(near, q, x, v, dt, 0.5 * params->spacing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
