@@ -60,6 +60,8 @@ def convergence(axes, sizes, errors, xlabel="dx [m]", title="error", slopes=(1, 
     for slope in slopes:
         axes.loglog(sizes, low * (np.asarray(sizes) / min(sizes)) ** slope, color=style.MUTED, linewidth=0.9, linestyle=(0, (4, 4)))
         axes.annotate(f"order {slope}", (max(sizes), low * (max(sizes) / min(sizes)) ** slope), fontsize=8, color=style.MUTED, ha="right")
+    axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
+    axes.minorticks_off()
     axes.set_xlabel(xlabel)
     axes.set_title(title)
     axes.legend(fontsize=9)

@@ -36,8 +36,13 @@ SECTIONS = (
 
 HEAD = """# The fluid against what is known
 
-Made by `./dev report fluid` ({seconds:.0f} s on {machine}); sections by `./dev report fluid -only NAME`, NAME given with each. Scenes and results are
-in `build/report/fluid`, reference numbers with their sources in `report/data`. Rows that are not within what is asked say **no**; there are {failures}.
+Made by `./dev report fluid` ({seconds:.0f} s on {machine}, often shared with other work: cpu seconds count); sections by `./dev report fluid -only NAME`, NAME given with each.
+Scenes and results are in `build/report/fluid`, reference numbers with their sources in `report/data`. Unless a section says otherwise: solver `iisph`, cubic spline, support
+2 dx, single precision, no viscosity. Orders: slope of the least-squares line of log error over log spacing. How walls, filter and loops were chosen: [fluid-slice.md](fluid-slice.md);
+formulas and their exact properties: the README's table and `ctest -R unit.sph`.
+
+## What is asked, and what was reached
+Each case is asked for its error over resolution, its order and a picture; bars are those of the method's page or of the order. Rows that miss a bar say **no**; there are {failures}.
 
 {summary}"""
 
