@@ -17,6 +17,7 @@ import fluid_claims
 import fluid_free
 import fluid_hard
 import fluid_marin
+import fluid_sloshing
 import fluid_speed
 import fluid_still
 import fluid_waves
@@ -29,6 +30,8 @@ SECTIONS = (
     ("drop", "A stretching drop", fluid_free.drop),
     ("column", "A collapsing column", fluid_free.column),
     ("marin", "A dam break against a box", fluid_marin.marin),
+    ("sloshing", "Sloshing: the first impact", fluid_sloshing.sloshing),
+    ("volume", "Sloshing: volume", fluid_sloshing.volume),
     ("hard", "Hard cases", fluid_hard.hard),
     ("speed", "Speed against error", fluid_speed.speed),
     ("claims", "What the sources say of speed", fluid_claims.claims),

@@ -20,6 +20,7 @@ DROP_CELLS = (10, 20, 40)  # spacings a radius
 DROP_WAYS = {
     "iisph, cubic spline, h = 2 dx (defaults)": {},
     "iisph, cubic spline, h = 3 dx": {"support": 3},
+    "isph, Wendland C2, h = 3 dx": {"solver": "isph", "kernel": "wendland_c2", "support": 3},
 }
 
 
