@@ -50,9 +50,9 @@ def first_peak(t, p):
     return float(t[k]), float(p[k])
 
 
-def measure(layers, end=END):
+def measure(layers, name="sloshing", end=END):
     dx = FILL / layers
-    result = flow(f"sloshing_{layers}", scene(layers), end=end, output_every=0.002, fields_every=0.1)
+    result = flow(f"{name}_{layers}", scene(layers), end=end, output_every=0.002, fields_every=0.1)
     t = result.probes["time"]
     peaks = {name: first_peak(t, result.probes[name]) for name in ("left", "right")}
     return {"dx": dx, "layers": layers, "n": result.n, "cpu": result.cpu, "t": t, "probes": result.probes, "result": result, "peaks": peaks, "iterations": result.iterations,
@@ -104,7 +104,7 @@ VOLUME_LAYERS, VOLUME_END = (6, 9), 10.0
 def volume():
     rows, curves = [], []
     for layers in VOLUME_LAYERS:
-        r = measure(layers, VOLUME_END)
+        r = measure(layers, "volume", VOLUME_END)
         dx = r["dx"]
         found = []
         for k, state in enumerate(r["result"].states()):
