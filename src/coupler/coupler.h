@@ -20,7 +20,8 @@ typedef enum {
   PROBE_HEIGHT,       /* of the water above the floor: volume of a column over its area [m] */
   PROBE_FORCE,        /* of the fluid on a body, an obstacle or a wall [N]             */
   PROBE_SURFACE,      /* height of the free surface, without splashes [m]              */
-  PROBE_FLOW_RATE     /* of the water through a rectangle [m^3/s]                      */
+  PROBE_FLOW_RATE,    /* of the water through a rectangle [m^3/s]                      */
+  PROBE_POWER         /* of the fluid on a wall or obstacle that moves [W]             */
 } ProbeQuantity;
 
 typedef struct {

@@ -202,8 +202,10 @@ static PetscErrorCode AddProbe(Coupler c, const char name[])
     PetscFunctionReturn(InputError(key, "must name an elastic body: only those have a displacement"));
   }
   if (p->quantity == PROBE_FORCE && probe->surface == WATER) PetscFunctionReturn(InputError(key, "must name what the force acts on: a body, an obstacle or a wall"));
+  if (p->quantity == PROBE_POWER && (probe->surface == WATER || is_body)) PetscFunctionReturn(InputError(key, "must name a wall or an obstacle: what moves by prescription"));
+  if (p->quantity == PROBE_VELOCITY && probe->surface >= c->n_bodies) PetscFunctionReturn(InputError(key, "must not be an obstacle, whose velocity the scene says itself"));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.quantity", name));
-  if (!c->sph && (IsOfWater(p->quantity) || p->quantity == PROBE_PRESSURE || p->quantity == PROBE_FORCE || (p->quantity == PROBE_VELOCITY && !is_body))) {
+  if (!c->sph && (IsOfWater(p->quantity) || p->quantity == PROBE_PRESSURE || p->quantity == PROBE_FORCE || p->quantity == PROBE_POWER || (p->quantity == PROBE_VELOCITY && !is_body))) {
     PetscFunctionReturn(InputError(key, "needs a fluid, and the scene has none"));
   }
   if (IsOfWater(p->quantity) && p->body[0]) PetscFunctionReturn(InputError(key, "is a quantity of the water at a place; leave out `body`"));
@@ -239,7 +241,7 @@ static int Columns(const CouplerProbe *probe)
 /* column headers "name [unit]" or "name_x [unit]"; headers has room for 3 columns a probe and the time */
 PetscErrorCode CouplerProbeHeaders(Coupler c, PetscInt *n, char headers[][2 * BY_NAME_MAX])
 {
-  static const char *const units[] = {"m", "m/s", "Pa", "m", "N", "m", "m^3/s"};
+  static const char *const units[] = {"m", "m/s", "Pa", "m", "N", "m", "m^3/s", "W"};
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(headers[0], "time [s]", 2 * BY_NAME_MAX));
@@ -334,6 +336,10 @@ static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal
       PetscCall(SPHGetWallForces(c->sph, walls));
       for (int k = 0; k < 3; k++) value[k] = walls[3 * (-1 - probe->surface) + k];
     }
+    break;
+  case PROBE_POWER:
+    PetscCall(SPHGetWallPowers(c->sph, walls));
+    *value = probe->surface >= 0 ? c->surface[probe->surface].power : walls[-1 - probe->surface];
     break;
   case PROBE_HEIGHT:
     PetscCall(SPHGetHeight(c->sph, probe->params.at, value));

@@ -206,6 +206,8 @@ BY_EXTERN PetscErrorCode SPHGetPatch(SPH sph, PetscInt patch, PetscReal *force, 
 BY_EXTERN PetscErrorCode SPHGetFlowRate(SPH sph, PetscInt axis, const PetscReal min[3], const PetscReal max[3], PetscReal *rate);
 /* force [N] of the fluid on the six planes, order xmin xmax ymin ymax zmin zmax */
 BY_EXTERN PetscErrorCode SPHGetWallForces(SPH sph, PetscReal force[18]);
+/* power [W] of the fluid on each of them in the last step */
+BY_EXTERN PetscErrorCode SPHGetWallPowers(SPH sph, PetscReal power[6]);
 
 typedef struct {
   PetscReal kinetic, potential;    /* [J]                                                                  */

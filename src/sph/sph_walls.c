@@ -421,6 +421,16 @@ PetscErrorCode SPHGetForces(SPH sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SPHGetWallPowers(SPH sph, PetscReal power[6])
+{
+  PetscFunctionBegin;
+  for (int k = 0; k < 6; k++) {
+    power[k] = 0.0;
+    for (int a = 0; a < 3; a++) power[k] += sph->wall_force[3 * k + a] * sph->plane_velocity[3 * k + a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SPHGetWallForces(SPH sph, PetscReal force[18])
 {
   PetscFunctionBegin;
