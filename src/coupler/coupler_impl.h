@@ -93,6 +93,7 @@ PETSC_INTERN PetscErrorCode CouplerSetBodiesFromOptions(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerMoveDomain(Coupler coupler, const DomainParams *domain);
 PETSC_INTERN PetscErrorCode CouplerRefuseMoving(const char key[], const char with[], const DomainParams *domain);
 PETSC_INTERN PetscErrorCode CouplerReadObstacleMotion(Coupler coupler, PetscInt obstacle, PetscBool slip);
+PETSC_INTERN PetscErrorCode CouplerSealedWalls(const char obstacle[], const DomainParams *domain, unsigned *walls);
 PETSC_INTERN PetscErrorCode CouplerPlaceObstacles(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerMoveObstacles(Coupler coupler, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerArriveObstacles(Coupler coupler, PetscReal dt);

@@ -118,6 +118,34 @@ PetscErrorCode CouplerRefuseMoving(const char key[], const char with[], const Do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* walls at rest from which an obstacle never parts: bits of SPHSetDomain */
+PetscErrorCode CouplerSealedWalls(const char obstacle[], const DomainParams *domain, unsigned *walls)
+{
+  MotionSection params;
+  char          prefix[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_motion_", obstacle));
+  PetscCall(KeysSetDefaults(MotionKeys, &params));
+  PetscCall(KeysSetFromOptions(MotionKeys, prefix, &params));
+  *walls = 0;
+  for (int k = 0; k < 6; k++) {
+    const PetscReal *axis = params.motion.axis, across = Norm3(axis) - PetscAbsReal(axis[k / 2]);
+
+    if (Has(&domain->walls, sides[k]) && params.motion.translation[k / 2] == 0.0 && !(params.motion.angle != 0.0 && across > 0.0)) *walls |= 1u << k;
+  }
+  for (PetscInt m = 0; m < domain->moving.n; m++) {
+    WallMotionParams moving;
+
+    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "domain_%s_", domain->moving.name[m]));
+    PetscCall(KeysSetDefaults(WallMotionKeys, &moving));
+    PetscCall(KeysSetFromOptions(WallMotionKeys, prefix, &moving));
+    for (int k = 0; k < 6; k++)
+      if (Has(&moving.walls, sides[k])) *walls &= ~(1u << k);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   CouplerSetObstacleMotion - let an obstacle move as a rigid body
 

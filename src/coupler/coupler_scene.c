@@ -221,12 +221,40 @@ static PetscErrorCode BuildBody(Coupler c, const char name[], const DomainParams
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Triangles of an obstacle that water can reach: without those that lie in a wall. Where a body stands on a wall both meet at an edge that is not
+   there for the water; with proxies on the hidden face the body would be lifted off by half the weight of the water on it. */
+static PetscErrorCode WetTriangles(const char name[], const Surface *surface, const DomainParams *domain, PetscReal spacing, PetscInt *n, PetscInt wet[])
+{
+  unsigned walls;
+
+  PetscFunctionBegin;
+  PetscCall(CouplerSealedWalls(name, domain, &walls));
+  *n = 0;
+  for (PetscInt t = 0; t < surface->n_triangles; t++) {
+    const PetscInt *v      = surface->triangles + 3 * t;
+    PetscBool       hidden = PETSC_FALSE;
+
+    for (int k = 0; k < 6; k++) {
+      const PetscReal at = k % 2 ? domain->max[k / 2] : domain->min[k / 2];
+      PetscReal       off = 0.0;
+
+      for (int a = 0; a < 3; a++) off = PetscMax(off, PetscAbsReal(surface->x[3 * v[a] + k / 2] - at));
+      if ((walls >> k & 1) && off <= 0.01 * spacing) hidden = PETSC_TRUE;
+    }
+    if (hidden) continue;
+    for (int a = 0; a < 3; a++) wet[3 * *n + a] = v[a];
+    (*n)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainParams *domain)
 {
   Surface        surface;
   Proxy          proxy = NULL;
   SPHParams     *fluid;
   PetscBool      slip;
+  PetscInt       n_wet = 0, *wet;
   char           key[2 * BY_NAME_MAX];
   PetscErrorCode ierr;
 
@@ -237,7 +265,10 @@ static PetscErrorCode BuildObstacle(Coupler c, const char name[], const DomainPa
   ierr = CheckInside(key, domain, fluid->spacing, surface.n_nodes, surface.x);
   if (!ierr) {
     PetscCall(ProxyCreate(PETSC_COMM_SELF, name, &proxy));
-    ierr = SetUpProxy(c, proxy, name, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles);
+    PetscCall(PetscMalloc1(3 * surface.n_triangles, &wet));
+    PetscCall(WetTriangles(name, &surface, domain, fluid->spacing, &n_wet, wet));
+    ierr = SetUpProxy(c, proxy, name, surface.n_nodes, surface.x, n_wet, wet);
+    PetscCall(PetscFree(wet));
   }
   if (!ierr) PetscCall(CouplerAddObstacle(c, name, proxy, surface.n_nodes, surface.x, surface.n_triangles, surface.triangles));
   else PetscCall(ProxyDestroy(&proxy));
