@@ -23,7 +23,9 @@ BY_HD double SPHSoundSpeed(double factor, double v0, double g, double H) { retur
    (v_ij . x_ij)/(rho0 (r^2 + 0.01 h^2)), hs = h/2 [Monaghan 1992 sec. 4.1, beta = 0] */
 BY_HD double SPHArtificialViscosity(double alpha, double c, double h, double rho0) { return 0.05 * alpha * c * h / rho0; }
 
-/* largest step of sound [s]: dt = cfl hs/(c (1 + 0.6 alpha)), hs = h/2 [Monaghan 1992 sec. 10.3, there with cfl 0.4 and 1.2 for both terms] */
-BY_HD double SPHAcousticStep(double cfl, double alpha, double c, double h) { return 0.5 * cfl * h / (c * (1.0 + 0.6*alpha)); }
+/* largest step of sound [s]: dt = 2 cfl hs/(c (1 + 0.6 alpha)), hs = h/2: twice that of Monaghan 1992 sec. 10.3. The hardest wave of a lattice has
+   2/omega = 1.7 to 2.4 hs/c for the four kernels at h = 2 to 3 dx, so that cfl 0.4 leaves a factor of two for disorder and for compression, where
+   sound is faster; results at half the step are the same (docs/verification/fluid-slice.md). */
+BY_HD double SPHAcousticStep(double cfl, double alpha, double c, double h) { return cfl * h / (c * (1.0 + 0.6*alpha)); }
 
 #endif

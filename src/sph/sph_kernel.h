@@ -113,13 +113,16 @@ BY_HD SPH_REAL SPHHalfSpaceDistance(int kernel, SPH_REAL part)
 
 /* Factor s on the volume of walls, planar or proxied, that puts the wetted surface where the geometry is (method 2), by support h/dx = 1.5, 1.75
    .. 3, linear between: still water stands within 0.03 dx for the cubic spline from 2 dx on, 0.08 dx for Wendland C2 from 2.5 dx on; below,
-   volume is lost or gained in the bulk and no factor helps (docs/verification/fluid-slice.md) */
+   volume is lost or gained in the bulk and no factor helps. poly6 with gradients of spiky: within 0.05 dx from 2 dx on. poly6 or spiky alone
+   lose or gain volume at every support (docs/verification/fluid-slice.md) */
 BY_HD SPH_REAL SPHWallFactor(int kernel, SPH_REAL h_over_dx)
 {
   const SPH_REAL cubic[7] = {(SPH_REAL)1.00, (SPH_REAL)1.00, (SPH_REAL)1.06, (SPH_REAL)1.14, (SPH_REAL)1.12, (SPH_REAL)1.12, (SPH_REAL)1.12};
   const SPH_REAL at       = h_over_dx < (SPH_REAL)1.5 ? (SPH_REAL)0 : h_over_dx > (SPH_REAL)3 ? (SPH_REAL)6 : (SPH_REAL)4 * (h_over_dx - (SPH_REAL)1.5);
   const int      i        = at >= (SPH_REAL)5 ? 5 : (int)at;
 
+  if (kernel == SPH_POLY6) return (SPH_REAL)1.05;
+  if (kernel == SPH_SPIKY) return (SPH_REAL)1;
   return kernel == SPH_WENDLAND ? (SPH_REAL)1.06 : cubic[i] + (at - (SPH_REAL)i) * (cubic[i + 1] - cubic[i]);
 }
 

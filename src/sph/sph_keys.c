@@ -22,7 +22,7 @@ const Key SPHKeys[] = {
   {"sound_speed", KEY_REAL, FIELD(sound_speed), "m/s", "0", 0, 1e4, 0, NULL,
    "wcsph: speed of sound; 0 = 10 sqrt(v^2 + 2 g H), v the largest initial speed, H from the highest water to the domain's floor"},
   {"stiffness", KEY_REAL, FIELD(stiffness), "m^2/s^2", "0", 0, 1e8, 0, NULL, "wcsph: k of p = k (rho - rho0), the square of the speed of sound; 0 = from sound_speed"},
-  {"artificial_viscosity", KEY_REAL, FIELD(artificial_viscosity), "1", "0.1", 0, 2, 0, NULL, "wcsph: alpha of Monaghan's artificial viscosity"},
+  {"artificial_viscosity", KEY_REAL, FIELD(artificial_viscosity), "1", "0.02", 0, 2, 0, NULL, "wcsph: alpha of Monaghan's artificial viscosity"},
   {"divergence_tolerance", KEY_REAL, FIELD(divergence_tolerance), "1", "1e-3", 1e-12, 0.1, 0, NULL, "mean compression in one step by the velocity that the divergence solve of dfsph leaves"},
   {"max_iterations", KEY_INT, FIELD(max_iterations), "1", "200", 1, 100000, 0, NULL, "operator applications in one pressure solve"},
   {"cfl", KEY_REAL, FIELD(cfl), "1", "0.4", 0, 1, KEY_LO_OPEN, NULL, "largest path of a particle in one step over spacing"},
