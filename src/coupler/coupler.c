@@ -490,7 +490,7 @@ static PetscErrorCode CoupledStep(Coupler c, PetscReal dt)
 PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
 {
   PetscFunctionBegin;
-  if (!c->setup) PetscCall(CouplerSetUp(c));
+  if (!c->setup) ByCall(CouplerSetUp(c));
   *dt = dt_max;
   PetscCall(CouplerTimer(c, N_PHASES));
   if (c->sph) {

@@ -149,7 +149,7 @@ static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
   ierr = OutputMakeDirectory(run->params.directory);
   if (ierr == BY_ERR_OUTPUT) PetscFunctionReturn(InputError("run.directory", "cannot be made or written\nname a directory that you may write"));
   PetscCall(ierr);
-  PetscCall(CouplerSetUp(c));
+  ByCall(CouplerSetUp(c));
   if (resume) {
     ByCall(CouplerLoad(c, resume));
     PetscCall(PetscStrcmp(resume, run->params.directory, &run->same_directory));
