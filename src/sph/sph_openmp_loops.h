@@ -164,30 +164,34 @@ static int Collect(const SPHLoops *l, const Candidates *c, int i, int *list, int
 static double SumPairs(const SPHLoops *l, const double x[], int i, int at, int n, real *gradient)
 {
   const real h = (real)l->h, mass = (real)l->mass;
-  const int *list = l->neighbour + at;
+  const int *list = l->neighbour + at, periodic = l->grid.periodic[0] || l->grid.periodic[1] || l->grid.periodic[2];
+  const double xi[3] = {x[3*i], x[3*i + 1], x[3*i + 2]};
   double     density = (double)SPHPairDensity(l->kernel, mass, 0, h);
 
   for (int first = 0; first < n; first += BLOCK) {
     const int m = n - first < BLOCK ? n - first : BLOCK, whole = (m + 15) & ~15; // whole vectors
-    real      d[3][BLOCK], f[BLOCK], w[BLOCK];
+    real      d[3][BLOCK], r[BLOCK], f[BLOCK], w[BLOCK];
 
     for (int k = 0; k < m; k++) {
-      for (int a = 0; a < 3; a++) {
-        double dx = x[3*i + a] - x[3*list[first + k] + a];
-        if (l->grid.periodic[a]) dx -= l->grid.period[a] * rint(dx / l->grid.period[a]);
-        d[a][k] = (real)dx;
-      }
+      const double *xj = x + 3*list[first + k];
+      double        dx[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+
+      for (int a = 0; a < 3 && periodic; a++)
+        if (l->grid.periodic[a]) dx[a] -= l->grid.period[a] * rint(dx[a] / l->grid.period[a]);
+      for (int a = 0; a < 3; a++) d[a][k] = (real)dx[a];
     }
     for (int k = m; k < whole; k++) d[0][k] = d[1][k] = d[2][k] = h;
 #pragma omp simd
     for (int k = 0; k < whole; k++) {
-      const real r = SQRT(d[0][k]*d[0][k] + d[1][k]*d[1][k] + d[2][k]*d[2][k]);
-      f[k] = SPHPairGradient(l->gradient_kernel, mass, r, h);
-      w[k] = SPHPairDensity(l->kernel, mass, r, h);
+      r[k] = SQRT(d[0][k]*d[0][k] + d[1][k]*d[1][k] + d[2][k]*d[2][k]);
+      w[k] = SPHPairDensity(l->kernel, mass, r[k], h);
     }
-    for (int k = 0; gradient && k < m; k++)
-      for (int a = 0; a < 3; a++) gradient[3*(first + k) + a] = f[k] * d[a][k];
     for (int k = 0; k < m; k++) density += (double)w[k];
+    if (!gradient) continue;
+#pragma omp simd
+    for (int k = 0; k < whole; k++) f[k] = SPHPairGradient(l->gradient_kernel, mass, r[k], h);
+    for (int k = 0; k < m; k++)
+      for (int a = 0; a < 3; a++) gradient[3*(first + k) + a] = f[k] * d[a][k];
   }
   return density;
 }
