@@ -20,7 +20,7 @@ roll is not among the references: here the roll is 4 sin(2 pi t/1.63 s) degrees,
 A slab periodic in depth, six spacings thick. Pressure: force on a patch of the wall 93 mm above the floor, a spacing high or a sensor's 9 mm if that is more, over its
 area, mean over 2 ms. First peaks on either wall, of the first wave that exceeds 2 kPa; error: of their mean. Roll builds up differently from the experiment's, so the first impacts are not of quite the same wave."""
 
-VOLUME = """The same tank for {end:.0f} s, {periods:.1f} periods of roll. By density: volume of all particles at the mean density of those in the bulk, two supports and more from walls
+VOLUME = """The same tank for {end:.0f} s, {periods:.1f} periods of roll. By density: volume of all particles at the mean density of those in the bulk, a support and a quarter and more from walls
 and below the surface, mass over mean density, over the volume at rest density. By hull: the set where the particles' volumes, smoothed by the kernel (support 2 dx, mirrored in the walls), are above one half, summed over cells of half
 a spacing (`report/volume.py`); drops that fly alone are less than half anywhere and do not count, so that a splash shows as a loss while it flies, and a lattice reads 2 to 3 % large; so periods are compared: its mean
 over the last period against that over the second (the first begins at rest), and both are given over the true volume. Bar 0.5 %."""
@@ -87,8 +87,8 @@ def sloshing():
 
 
 def bulk_density(state, layers):
-    """mean density [kg/m^3] of particles two supports and more from walls and surface; nan without any"""
-    reach = 2 * 2 * FILL / layers
+    """mean density [kg/m^3] of particles a support and a quarter and more from walls and surface; nan without any"""
+    reach = 1.25 * 2 * FILL / layers
     x = state.x
     deep = (x[:, 0] > reach) & (x[:, 0] < LENGTH - reach) & (x[:, 2] > reach)
     columns = (x[:, 0] / (LENGTH / 60)).astype(int).clip(0, 59)
@@ -98,7 +98,7 @@ def bulk_density(state, layers):
     return float(np.mean(state.rho[deep])) if np.any(deep) else float("nan")
 
 
-VOLUME_LAYERS, VOLUME_END = (6, 9), 10.0
+VOLUME_LAYERS, VOLUME_END = (6, 8), 10.0
 
 
 def volume():
