@@ -4,7 +4,7 @@ import numpy as np
 
 import draw
 from flow import data, flow, order, percent, shown, tank, with_probes
-from program import table, verdict
+from program import table
 from sections import claim
 from volume import occupied
 
@@ -66,7 +66,7 @@ def sloshing():
     fine, sizes = runs[-1], [r["dx"] for r in runs]
     errors = [abs(r["peak"] / mean - 1) for r in runs]
     slope = order(sizes, errors)
-    rows = [(f"{1000 * r['dx']:.1f}", f"{r['n']:,}", *(f"{r['peaks'][k][1]:.0f} at {r['peaks'][k][0]:.2f} s" for k in ("left", "right")), percent(e, 0), verdict(abs(r["peak"] - mean) < sd), f"{r['iterations']:.1f}", f"{r['cpu']:.0f}")
+    rows = [(f"{1000 * r['dx']:.1f}", f"{r['n']:,}", *(f"{r['peaks'][k][1]:.0f} at {r['peaks'][k][0]:.2f} s" for k in ("left", "right")), percent(e, 0), "yes" if abs(r["peak"] - mean) < sd else "no", f"{r['iterations']:.1f}", f"{r['cpu']:.0f}")
             for r, e in zip(runs, errors)]
     rows.append(("order", "", "", "", shown(slope), "", "", ""))
     claim("sloshing impact, first peak", percent(errors[-1], 0), shown(slope), f"{percent(sd / mean, 0)}, the experiment's spread", errors[-1] < sd / mean)
@@ -116,7 +116,7 @@ def volume():
         change = {"density": float(np.nanmax(np.abs(by_density - 1))), "hull": float(abs(np.mean(hull[late]) / np.mean(hull[early]) - 1))}
         curves.append((dx, t, by_density, hull))
         rows.append((f"{1000 * dx:.1f}", f"{r['n']:,}", f"{100 * np.nanmin(by_density - 1):+.3f} to {100 * np.nanmax(by_density - 1):+.3f} %", f"{100 * np.mean(hull[early] - 1):+.2f} %", f"{100 * np.mean(hull[late] - 1):+.2f} %",
-                     f"{100 * np.min(hull[t > PERIOD] - 1):+.2f} to {100 * np.max(hull[t > PERIOD] - 1):+.2f} %", verdict(max(change.values()) < 0.005), f"{r['cpu']:.0f}"))
+                     f"{100 * np.min(hull[t > PERIOD] - 1):+.2f} to {100 * np.max(hull[t > PERIOD] - 1):+.2f} %", "yes" if max(change.values()) < 0.005 else "no", f"{r['cpu']:.0f}"))
     claim("sloshing for 10 s, volume by density, largest change", percent(change["density"]), "", "0.5 %", change["density"] < 0.005)
     claim("sloshing for 10 s, volume by hull, last period against second", percent(change["hull"]), "", "0.5 %", change["hull"] < 0.005)
     drawn, axes = draw.figure(2, width=11.5, height=3.4, sharey=True)

@@ -5,7 +5,7 @@ import numpy as np
 import draw
 from flow import flow, order, percent, rms, shown, tank, with_probes
 from sections import claim
-from program import small, table, verdict
+from program import small, table
 
 DEPTH, WIDTH, GRAVITY, DENSITY = 0.4, 0.2, 9.81, 1000.0
 LAYERS = (10, 20, 40)
@@ -76,6 +76,5 @@ def still():
     claim("still water, noise of the floor force", percent(fine["noise"]), shown(slope["noise"]), "1 %", fine["noise"] < 0.01)
     claim("still water, mean compression", small(fine["compression"]), "", "1e-3", fine["compression"] < 1e-3)
     claim("still water, wetted surface", f"{fine['offset']:+.3f} dx", "", "0.1 dx", abs(fine["offset"]) < 0.1)
-    within = verdict(all((fine["profile"] < 0.02, fine["floor"] < 0.005, fine["noise"] < 0.01, fine["compression"] < 1e-3, abs(fine["offset"]) < 0.1)))
     return (STILL + "\n\n" + table(["dx, mm", "particles", "profile", "noise of a gauge", "floor force off by", "its noise", "compression", "rms speed / sqrt(gH)", "offset, dx", "applications a step", "cpu, s"], rows)
-            + f"\nAll five bars held at the finest spacing: {within}.\n" + picture(runs))
+            + picture(runs))
