@@ -14,3 +14,6 @@ set_source_files_properties(src/sph/sph_openmp_single.c src/sph/sph_openmp_doubl
 # speed and error of the fluid alone: cmake --build build --target bench.sph
 add_executable(bench.sph EXCLUDE_FROM_ALL bench/bench_sph.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:sph>)
 target_link_libraries(bench.sph PRIVATE byssus_flags)
+# the pressure system by every method, from the same states: cmake --build build --target bench.krylov
+add_executable(bench.krylov EXCLUDE_FROM_ALL bench/bench_krylov.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:sph>)
+target_link_libraries(bench.krylov PRIVATE byssus_flags)
