@@ -82,7 +82,7 @@ static PetscErrorCode Try(SPH sph, const Method *m, const PetscReal start[], Pet
   PetscCall(Once(sph, m, start, dt, &seconds, &applications, &residual)); // the first makes PETSc's objects
   if (m->option) PetscCall(Once(sph, m, start, dt, &seconds, &applications, &residual));
   while (m->bounded < 0 && residual > tolerance && applications < limit) {
-    sph->params.tolerance *= 0.8;
+    sph->params.tolerance *= 0.6;
     PetscCall(Once(sph, m, start, dt, &seconds, &applications, &residual));
   }
   if (m->option) {

@@ -16,6 +16,7 @@ sys.dont_write_bytecode = True
 import fluid_claims
 import fluid_free
 import fluid_hard
+import fluid_krylov
 import fluid_marin
 import fluid_sloshing
 import fluid_speed
@@ -29,6 +30,7 @@ SECTIONS = (
     ("moving_tank", "Water in tanks that move", fluid_waves.moving_tank),
     ("drop", "A stretching drop", fluid_free.drop),
     ("column", "A collapsing column", fluid_free.column),
+    ("krylov", "The pressure system, solved in many ways", fluid_krylov.krylov),
     ("marin", "A dam break against a box", fluid_marin.marin),
     ("sloshing", "Sloshing: the first impact", fluid_sloshing.sloshing),
     ("volume", "Sloshing: volume", fluid_sloshing.volume),
