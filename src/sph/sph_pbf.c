@@ -40,7 +40,7 @@ static PetscErrorCode SetUp(SPH sph)
   PetscFunctionBegin;
   PetscCall(PetscNew(&q));
   sph->method_data = q;
-  q->full          = 1.5 * sph->filter_norm; // of SPHFilterNorm: 2/3 of the same sum
+  q->full          = sph->prototype;
   PetscCall(SPHAddArray_Internal(sph, &q->place, 3 * sizeof(PetscReal)));
   PetscCall(SPHAddArray_Internal(sph, &q->moved, 3 * sizeof(PetscReal)));
   PetscCall(SPHAddArray_Internal(sph, &q->solid, 3 * sizeof(PetscReal)));
@@ -128,21 +128,25 @@ static void Evaluate(SPH sph, PetscReal dt)
   sph->table->SetWalls(&sph->loops, q->walls);
 }
 
-/* mean compression, or mean deviation where pressure may have either sign */
+/* mean compression, or its largest value where tolerance_norm asks; deviation where pressure may have either sign */
 static PetscReal Error(SPH sph)
 {
   const int       n = (int)sph->n, chunks = (int)SPH_CHUNKS(n), bounded = sph->params.free_surface;
   const PetscReal rho0 = sph->params.density;
-  PetscReal       sum;
+  PetscReal       sum, largest = 0.0;
 
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) reduction(max : largest)
   for (int c = 0; c < chunks; c++) {
     PetscReal s = 0.0;
-    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) s += bounded ? PetscMax(0.0, sph->residual[i] - rho0) : PetscAbsReal(sph->residual[i] - rho0);
+    for (int i = SPH_FIRST(c); i < SPH_LAST(c, n); i++) {
+      const PetscReal excess = bounded ? PetscMax(0.0, sph->residual[i] - rho0) : PetscAbsReal(sph->residual[i] - rho0);
+      s += excess;
+      largest = PetscMax(largest, excess);
+    }
     sph->partial[c * SPH_SUMS] = s;
   }
   SPHSumPartials(sph, 1, &sum);
-  return sum / (rho0 * n);
+  return (sph->params.tolerance_norm == SPH_NORM_LARGEST ? largest : sum / n) / rho0;
 }
 
 /* one iteration from what Evaluate() found */

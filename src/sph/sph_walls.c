@@ -10,8 +10,8 @@
 
 #include "sph_impl.h"
 
-/* phi_k of the planes that particle i touches, and the slope along the axis; returns how many */
-static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal phi[6], PetscReal slope[6], PetscReal distance[6])
+/* phi_k of the planes that a particle at x touches, where they are `later` after the step's beginning, and the slope along the axis; returns how many */
+static int TouchedPlanesLater(SPH sph, PetscReal later, const PetscReal x[3], int plane[6], PetscReal phi[6], PetscReal slope[6], PetscReal distance[6])
 {
   int n = 0;
 
@@ -20,6 +20,7 @@ static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal 
 
     if (!(sph->walls >> k & 1)) continue;
     d = SPHPlaneDistance(sph, k, x, &sign);
+    d -= sign * later * sph->plane_velocity[3 * k + k / 2];
     if (d >= sph->h) continue;
     plane[n]    = k;
     phi[n]      = PetscMin(1.0, sph->wall_factor * SPHHalfSpace(sph->params.kernel, d, sph->h));
@@ -33,6 +34,11 @@ static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal 
     n++;
   }
   return n;
+}
+
+static int TouchedPlanes(SPH sph, const PetscReal x[3], int plane[6], PetscReal phi[6], PetscReal slope[6], PetscReal distance[6])
+{
+  return TouchedPlanesLater(sph, 0.0, x, plane, phi, slope, distance);
 }
 
 /* what the planes of every axis but one leave open; axis -1: all */
@@ -118,9 +124,8 @@ void SPHPlanesAt_Internal(SPH sph, PetscReal dt, const PetscReal x[3], PetscReal
 {
   PetscReal phi[6], slope[6], d[6];
   int       plane[6];
-  const int touched = TouchedPlanes(sph, x, plane, phi, slope, d);
+  const int touched = TouchedPlanesLater(sph, dt, x, plane, phi, slope, d);
 
-  (void)dt;
   *open = OpenBut(touched, plane, phi, -1);
   for (int k = 0; k < 6; k++) part[k] = 0.0;
   for (int k = 0; k < touched; k++) {
@@ -133,6 +138,7 @@ PetscReal SPHSurfacesAt_Internal(SPH sph, int i, PetscReal dt, const PetscReal x
   const PetscReal planes = sph->open[i] / PetscMax(sph->open_surfaces[i], 1e-12);
   PetscReal       rate   = -dt * sph->wall_rate[i];
 
+  if (SPHPlanesMove_Internal(sph)) rate += dt * FromPlanes(sph, i, NULL, NULL);
   for (int k = 0; k < 3; k++) rate += solid[k] * (x[k] - sph->x[3 * i + k]);
   return PetscMin(1.0, PetscMax(0.0, sph->open_surfaces[i] - rate / (sph->params.density * PetscMax(planes, 1e-12))));
 }

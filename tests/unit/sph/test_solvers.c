@@ -29,6 +29,7 @@ static const Row Rows[] = {
   {"dfsph",             SPH_SOLVER_DFSPH,        0, 0, 7, 0.02, 0.05, 0.15, 1e-12},
   {"pbf",               SPH_SOLVER_PBF,          0, 0, 7, 0.02, 0.05, 0.15, 1e-12},
   {"iisph, Mueller's",  SPH_SOLVER_IISPH,        SPH_POLY6, 1 + SPH_SPIKY, 7, 0.02, 0.10, 0.15, 1e-12}, // its gradient is not that of its density
+  {"pbf, its kernels",  SPH_SOLVER_PBF,          SPH_POLY6, 1 + SPH_SPIKY, 7, 0.02, 0.10, 0.15, 1e-12},
 };
 #define N_ROWS (int)(sizeof(Rows)/sizeof(*Rows))
 
