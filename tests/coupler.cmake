@@ -6,6 +6,7 @@ function(byssus_run_test label name)
 endfunction()
 
 byssus_run_test(conservation free_body)
+byssus_run_test(conservation solvers)
 byssus_run_test(conservation impulse)
 byssus_run_test(conservation resume)
 byssus_run_test(conservation breakdown)

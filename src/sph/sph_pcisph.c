@@ -57,8 +57,8 @@ static void Correct(SPH sph, PetscReal dt, const PetscReal rho[], const PetscRea
   *largest = top;
 }
 
-/* delta of every particle; the largest eigenvalue of the system, estimated once, limits it where supports are wide (the paper's stays below
-   2.2 dx, at 3 dx it would be twice too large) */
+/* delta of every particle; the largest eigenvalue of the system, estimated once, limits it where supports are wide (the paper's is stable
+   below 2.3 dx, at 3 dx it would be twice too large) */
 static PetscErrorCode FindDelta(SPH sph, const SPHOperator *op, PetscReal delta[])
 {
   const int n = (int)sph->n;
