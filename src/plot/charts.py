@@ -84,6 +84,8 @@ def draw_energies(run, path):
     if energies:
         total = sum(table.get(n) for n in energies)
         curve(axes[-1], table.time, total - total[0], label="all energies, from their start", color=COLOURS[5])
+        if has(table, "work_motion"):
+            curve(axes[-1], table.time, table.get("work_motion"), label="work of what is moved", color=style.MUTED, linestyle="--", linewidth=1.4)
         finish(axes[-1], "together", "J")
     style.save(figure, path)
 
