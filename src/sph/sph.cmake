@@ -7,7 +7,7 @@ byssus_module(sph
   src/sph/sph_motion.c
   src/sph/sph.c src/sph/sph_arrays.c src/sph/sph_keys.c src/sph/sph_neighbors.c src/sph/sph_walls.c src/sph/sph_sums.c src/sph/sph_time.c src/sph/sph_stop.c
   src/sph/sph_viscosity.c src/sph/sph_smooth.c src/sph/sph_pressure.c src/sph/sph_iisph.c src/sph/sph_newton.c src/sph/sph_mprgp.c src/sph/sph_closed.c src/sph/sph_isph.c src/sph/sph_shift.c src/sph/sph_dfsph.c src/sph/sph_pcisph.c
-  src/sph/sph_pbf.c src/sph/sph_wcsph.c src/sph/sph_ksp.c src/sph/sph_gauge.c src/sph/sph_patch.c src/sph/sph_state.c src/sph/sph_open.c src/sph/sph_open_setup.c
+  src/sph/sph_pbf.c src/sph/sph_wcsph.c src/sph/sph_ksp.c src/sph/sph_gauge.c src/sph/sph_patch.c src/sph/sph_state.c src/sph/sph_settle.c src/sph/sph_open.c src/sph/sph_open_setup.c
   src/sph/sph_openmp_single.c src/sph/sph_openmp_double.c ${SPH_DEVICE})
 # no floating-point status flags: square roots and selections vectorise; nothing is reordered
 set_source_files_properties(src/sph/sph_openmp_single.c src/sph/sph_openmp_double.c src/sph/sph_mprgp.c src/sph/sph_newton.c PROPERTIES COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")

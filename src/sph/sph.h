@@ -58,6 +58,7 @@ typedef struct {
   int       gradient_kernel;  /* of every gradient, at pairs and walls: 0 = the same, else SPHKernelType + 1 */
   int       viscous_form;     /* SPHViscousForm                                                          */
   int       precision;        /* SPHPrecision of the pair loops; positions and velocities are kept in double */
+  PetscBool settle;           /* start from rest under hydrostatic pressure                              */
   Names     fill;             /* names of blocks sph.<name>: read by the coupler's scene builder         */
   Names     inflow, outflow, sources; /* names of openings sph.<name>                                    */
 } SPHParams;
@@ -174,6 +175,10 @@ BY_EXTERN PetscErrorCode SPHGetUnionFactors(SPH sph, PetscInt surface, const Pet
 /* Move an initial cloud until no particle is denser than rest density by more than `tol` (mean compression), velocities and
    time untouched; surfaces are asked for through `contacts(ctx, sph)`, which must call SPHSetContacts (NULL: none). */
 BY_EXTERN PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCode (*contacts)(void *, SPH), void *ctx);
+
+/* Damped steps without time until still water is at rest with hydrostatic pressure; velocities are zero afterwards. rest (may be NULL): rms
+   acceleration that is left, over gravity. */
+BY_EXTERN PetscErrorCode SPHSettle(SPH sph, PetscReal tol, PetscInt max_steps, PetscErrorCode (*contacts)(void *, SPH), void *ctx, PetscReal *rest);
 
 /* state in the current sorted order, double; arrays are borrowed, valid until the next SPHUpdateNeighbors */
 BY_EXTERN PetscErrorCode SPHGetSize(SPH sph, PetscInt *n);

@@ -49,6 +49,7 @@ const Key SPHKeys[] = {
   {"gradient_kernel", KEY_CHOICE, FIELD(gradient_kernel), "", "same", 0, 0, 0, Gradients, "kernel of all gradients, where it is not that of density (Mueller 2003: poly6 with spiky)"},
   {"viscous_form", KEY_CHOICE, FIELD(viscous_form), "", "morris", 0, 0, 0, Viscous, "form of viscosity: morris is the more accurate at walls, monaghan keeps angular momentum"},
   {"precision", KEY_CHOICE, FIELD(precision), "", "single", 0, 0, 0, Precisions, "of the pair loops; positions and velocities are kept in double"},
+  {"settle", KEY_BOOL, FIELD(settle), "", "false", 0, 0, 0, NULL, "before the run, bring water that can stay where it is to rest: particles in place, pressure hydrostatic"},
   {"inflow", KEY_NAMES, FIELD(inflow), "", "", 0, 0, 0, NULL, "names of openings through which water enters, each a section sph.<name>"},
   {"outflow", KEY_NAMES, FIELD(outflow), "", "", 0, 0, 0, NULL, "names of openings through which water leaves, each a section sph.<name>"},
   {"sources", KEY_NAMES, FIELD(sources), "", "", 0, 0, 0, NULL, "names of taps in the domain, each a section sph.<name>"},

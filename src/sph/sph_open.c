@@ -169,7 +169,7 @@ PetscErrorCode SPHOpenPredict_Internal(SPH sph, PetscReal dt)
       Continue(sph, o, i, s, dt);
       sph->p_tilde[i] = to_tilde * GivenPressure(sph, o, sph->x + 3 * i);
     } else {
-      const PetscReal speed = Speed(o, ab, t);
+      const PetscReal speed = sph->packing ? 0.0 : Speed(o, ab, t); // while water settles, nothing comes
       for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = speed * o->n[k];
     }
   }
