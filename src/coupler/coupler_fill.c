@@ -403,7 +403,7 @@ PetscErrorCode CouplerBuildFluid(Coupler c, const DomainParams *domain)
   PetscCall(PetscFree(cloud.x));
   ByCall(SPHSetUp(c->sph));
   ByCall(SPHPack(c->sph, 1e-3, 100, c->n_surfaces ? PackContacts : NULL, c));
-  if (params->settle) ByCall(SPHSettle(c->sph, 5e-3, 400, c->n_surfaces ? PackContacts : NULL, c, NULL));
+  if (params->settle) ByCall(SPHSettle(c->sph, 1e-2, 600, c->n_surfaces ? PackContacts : NULL, c, NULL));
   ByCall(SetVelocities(c->sph, &params->fill, cloud.n, cloud.block));
   PetscCall(PetscFree(cloud.block));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,7 +4,7 @@
 #include "mat3.h"
 #include "sph_impl.h"
 
-#define SETTLE_KEEP 0.8 /* part of the velocity that lasts a step */
+#define SETTLE_KEEP 0.95 /* part of the velocity that lasts a step */
 
 /* velocities after a step (before it: v_alt), damped; none where they are prescribed. Returns the rms acceleration of the step over g */
 static PetscReal Damp(SPH sph, PetscReal dt)
