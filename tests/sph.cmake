@@ -14,6 +14,8 @@ byssus_test(unit/sph/test_viscosity base sph)
 byssus_test(unit/sph/test_gauge base sph)
 byssus_test(unit/sph/test_closed base sph)
 byssus_test(unit/sph/test_field base sph)
+byssus_test(unit/sph/test_open base sph)
+byssus_test(unit/sph/test_settle base sph)
 
 # the device's loops against the CPU's; 77 = no device here
 byssus_test(backend/test_sph_cuda base sph)
