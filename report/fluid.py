@@ -14,6 +14,7 @@ import sys
 sys.dont_write_bytecode = True
 
 import fluid_claims
+import fluid_flows
 import fluid_free
 import fluid_hard
 import fluid_krylov
@@ -26,6 +27,9 @@ from sections import main
 
 SECTIONS = (
     ("still", "Still water in a tank", fluid_still.still),
+    ("settle", "Start from rest", fluid_flows.settle),
+    ("open_channel", "Channels with inflow and outflow", fluid_flows.open_channel),
+    ("source", "A tap that fills a tank", fluid_flows.source),
     ("wave_maker", "Waves of a piston", fluid_waves.wave_maker),
     ("moving_tank", "Water in tanks that move", fluid_waves.moving_tank),
     ("drop", "A stretching drop", fluid_free.drop),

@@ -192,6 +192,7 @@ PetscErrorCode SPHFindNorm_Internal(SPH sph, const SPHOperator *op)
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < n; i++) sph->mode[i] = factor * sph->Adirection[i] + 1e-12;
   }
+  sph->norm       = PetscMax(sph->norm, 1.0); // the diagonal of what is scaled: drops that touch nothing yet have no norm of their own
   sph->iterations = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
