@@ -17,6 +17,7 @@ static void Solve(const char option[], const char type[], PetscReal tolerance, P
   if (option) assert_petsc(PetscOptionsSetValue(NULL, option, type));
   sph->params.tolerance      = tolerance;
   sph->params.max_iterations = 100000;
+  sph->params.solver         = SPH_SOLVER_IISPH;
   sph->params.free_surface   = free_surface;
   sph->params.solver         = SPH_SOLVER_IISPH;
   assert_petsc(SPHSetDomain(sph, lo, hi, 31, 0));
