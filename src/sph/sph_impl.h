@@ -77,7 +77,8 @@ typedef struct {
   size_t     slots;                  /* pairs                                                  */
   PetscReal *distance;               /* n x SPH_IMAGES [m]                                     */
   PetscReal *moments;                /* n x 6, B: inverse of sum_j V (x_j - x_i) grad W_ij [1] */
-  PetscReal *trace;                  /* n, scale of the coefficients [1]                       */
+  PetscReal *trace;                  /* n, of the moments with images [kg/m^3]                 */
+  PetscReal *stretch;                /* n x 6, N of SPHPairStretch [1]                         */
   PetscReal *velocity_gradient;      /* n x 9 [1/s]                                            */
   PetscReal *pressure_gradient;      /* n x 3 [Pa/m]                                           */
   PetscReal *fullness;               /* n, least eigenvalue of the full moments [1]            */
@@ -284,6 +285,7 @@ PETSC_INTERN PetscErrorCode SPHDestroyKSP_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHCompact_Internal(SPH sph, PetscReal diagonal[]);
 PETSC_INTERN PetscErrorCode SPHCompactDestroy_Internal(SPH sph);
 PETSC_INTERN void           SPHVelocityGradient_Internal(SPH sph, const PetscReal v[]);
+PETSC_INTERN void           SPHWallConcentration_Internal(SPH sph, PetscInt i, PetscReal C[3]);
 /* sph_shift.c */
 PETSC_INTERN PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt);
 /* solve for the density alone, dt = 1, starting from nothing, with the walls at rest */

@@ -34,6 +34,8 @@ static PetscErrorCode Reserve(SPH sph)
   if (n > w->allocated) {
     w->allocated = n + n / 8;
     PetscCall(PetscFree7(w->distance, w->moments, w->trace, w->velocity_gradient, w->pressure_gradient, w->fullness, w->shift));
+  PetscCall(PetscFree(w->stretch));
+    PetscCall(PetscMalloc1(6 * w->allocated, &w->stretch));
     PetscCall(PetscMalloc7(SPH_IMAGES * w->allocated, &w->distance, 6 * w->allocated, &w->moments, w->allocated, &w->trace, 9 * w->allocated, &w->velocity_gradient, 3 * w->allocated,
                            &w->pressure_gradient, w->allocated, &w->fullness, 3 * w->allocated, &w->shift));
   }
@@ -52,6 +54,7 @@ PetscErrorCode SPHCompactDestroy_Internal(SPH sph)
 
   PetscFunctionBegin;
   PetscCall(PetscFree7(w->distance, w->moments, w->trace, w->velocity_gradient, w->pressure_gradient, w->fullness, w->shift));
+  PetscCall(PetscFree(w->stretch));
   free(sph->loops.compact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -104,10 +107,48 @@ static void AddWalls(SPH sph, PetscInt i, PetscReal M[6])
   }
 }
 
-/* moments -> their inverse B; a neighbourhood that is flat (fewer than a handful of particles) gets a little of the identity */
+/* N of SPHPairStretch: 1 - 1.5 times the deviation of the moments from a sphere, scaled so that the trace is right; at walls, whose images are
+   in the trace but not in the moments, the scale alone */
+static void Stretch(SPH sph, PetscInt i)
+{
+  const PetscReal *M = sph->compact.moments + 6 * i, trace = M[0] + M[3] + M[5], images = sph->compact.trace[i] / sph->params.density;
+  PetscReal       *N = sph->compact.stretch + 6 * i, double_dot, scale;
+
+  for (int k = 0; k < 6; k++) N[k] = k == 0 || k == 3 || k == 5 ? 1.0 : 0.0;
+  if (images < 1.001 * trace)
+    for (int k = 0; k < 6; k++) N[k] -= 1.5 * (3.0 * M[k] / trace - N[k]);
+  double_dot = N[0] * M[0] + N[3] * M[3] + N[5] * M[5] + 2.0 * (N[1] * M[1] + N[2] * M[2] + N[4] * M[4]) + images - trace;
+  scale      = PetscMin(1.25, PetscMax(0.8, 3.0 / double_dot));
+  for (int k = 0; k < 6; k++) N[k] *= scale;
+}
+
+/* gradient of phi, the walls' part of the concentration, as the union of all of them [1/m] */
+void SPHWallConcentration_Internal(SPH sph, PetscInt i, PetscReal C[3])
+{
+  const PetscReal *d = sph->compact.distance + SPH_IMAGES * i, *G = sph->G + 3 * i, *P = sph->G_planes + 3 * i, rho0 = sph->params.density;
+  const int        kernel = sph->params.kernel;
+  PetscReal        open[SPH_IMAGES], S[3] = {G[0] - P[0], G[1] - P[1], G[2] - P[2]};
+
+  for (int k = 0; k < 3; k++) C[k] = G[k] / rho0;
+  if (sph->wall_flux == 1.0) return; // G is the union's
+  for (int k = 0; k < SPH_IMAGES; k++) open[k] = d[k] < sph->h ? 1.0 - PetscMin(1.0, sph->wall_factor * SPHHalfSpace(kernel, d[k], sph->h)) : 1.0;
+  for (int k = 0; k < 3; k++) C[k] = 0.0;
+  for (int k = 0; k < SPH_IMAGES; k++) {
+    PetscReal part = 1.0;
+
+    if (d[k] >= sph->h) continue;
+    for (int m = 0; m < SPH_IMAGES; m++)
+      if (m != k) part *= open[m];
+    if (k < 6) C[k / 2] += (k % 2 ? 1.0 : -1.0) * part * sph->wall_factor * SPHPlaneDensity(kernel, d[k], sph->h);
+    else
+      for (int a = 0; a < 3; a++) C[a] += part * S[a] / (sph->wall_flux * rho0);
+  }
+}
+
+/* moments -> their inverse B; a neighbourhood that is flat, least eigenvalue below a tenth of the trace, gets what lacks of the identity */
 static void Invert(PetscReal M[6])
 {
-  const PetscReal trace = M[0] + M[3] + M[5], least = LeastEigenvalue3(M), add = least < 0.02 * trace ? 0.1 * trace : 0.0;
+  const PetscReal trace = M[0] + M[3] + M[5], least = LeastEigenvalue3(M), add = PetscMax(0.0, 0.1 * trace - least);
   const PetscReal A[9] = {M[0] + add, M[1], M[2], M[1], M[3] + add, M[4], M[2], M[4], M[5] + add};
   PetscReal       B[9] = {0};
 
@@ -138,10 +179,10 @@ PetscErrorCode SPHCompact_Internal(SPH sph, PetscReal diagonal[])
     for (int k = 0; k < 6; k++) full[k] = w->moments[6 * i + k] /= rho0;
     AddWalls(sph, i, full);
     w->fullness[i] = LeastEigenvalue3(full);
-    w->trace[i]    = PetscMin(1.25, PetscMax(0.8, 3.0 * rho0 / w->trace[i]));
+    Stretch(sph, i);
     Invert(w->moments + 6 * i);
   }
-  sph->table->ScaleCompact(&sph->loops, w->trace, diagonal);
+  sph->table->ScaleCompact(&sph->loops, w->stretch, diagonal);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,10 +241,10 @@ static PetscReal WallFlux(SPH sph, PetscInt i)
     const int a = k / 2;
     if (d[k] >= sph->h) continue;
     // one plane of an axis: its part of G is the component along the axis; n.grad v.n = dv_a/dx_a
-    flux += d[k] * PetscAbsReal(sph->open_surfaces[i] * P[a]) * L[3 * a + a];
+    flux += d[k] * PetscAbsReal(P[a]) * L[3 * a + a];
   }
   if (d[6] < sph->h) {
-    const PetscReal o = sph->open_surfaces[i], S[3] = {G[0] - o * P[0], G[1] - o * P[1], G[2] - o * P[2]}, size = Norm3(S);
+    const PetscReal S[3] = {G[0] - P[0], G[1] - P[1], G[2] - P[2]}, size = Norm3(S);
     PetscReal       Ln[3];
     Mul3(L, S, Ln);
     if (size > 0) flux += d[6] * Dot3(S, Ln) / size;
@@ -230,11 +271,13 @@ static PetscErrorCode Prepare(SPH sph, const SPHOperator *op)
       const PetscReal *L        = w->velocity_gradient + 9 * i;
       const PetscReal  div      = L[0] + L[4] + L[8];
       const PetscReal  square   = L[0] * L[0] + L[4] * L[4] + L[8] * L[8] + 2.0 * (L[1] * L[3] + L[2] * L[6] + L[5] * L[7]);
+      const PetscReal  rate2    = Dot3(L, L) + Dot3(L + 3, L + 3) + Dot3(L + 6, L + 6);
+      const PetscReal  ahead    = dt * dt * rate2 > 0.0625 ? 0.125 / sqrt(rate2) : 0.5 * dt; // noise is not led into the future
       const PetscBool  pressure = (PetscBool)(sph->root[i] > 0 && (!sph->params.free_surface || w->fullness[i] > SPH_SURFACE));
 
       sph->root[i]  = pressure ? sqrt(2.0 * rho0 * sph->root[i]) : 0.0;
       sph->scale[i] = pressure ? 1.0 / sph->root[i] : 0.0;
-      sph->rhs[i]   = pressure ? dt * (WallFlux(sph, i) - rho0 * (div - 0.5 * dt * square)) : 0.0;
+      sph->rhs[i]   = pressure ? dt * (WallFlux(sph, i) - rho0 * (div - ahead * square)) : 0.0;
       sph->y[i]     = pressure ? sph->p[i] / (rho0 * rho0) * sph->root[i] : 0.0;
       s0 += sph->rhs[i];
       s1 += pressure ? 1.0 : 0.0;

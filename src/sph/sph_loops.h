@@ -60,7 +60,7 @@ typedef struct {
   void (*Filter)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum [(v_i - v_j) . g] g of vector */
   /* compact Laplacian and corrected gradients; distance: SPH_IMAGES per particle [m], >= h where there is no wall */
   void (*Compact)(const SPHLoops *l, const double distance[], double moments[], double trace[]); /* -> compact; sum c d d^T (6), its trace with images */
-  void (*ScaleCompact)(const SPHLoops *l, const double s[], double diagonal[]);  /* compact_ij *= (s_i + s_j)/2; sums of rows */
+  void (*ScaleCompact)(const SPHLoops *l, const double N[], double diagonal[]);  /* compact_ij *= SPHPairStretch of N (6 per particle); sums of rows */
   void (*Laplacian)(const SPHLoops *l, double factor, const double scale[], double out[]); /* factor scale sum c_ij (p_i - p_j) */
   void (*Difference)(const SPHLoops *l);                                         /* vector = sum (p_j - p_i) m grad W    */
   void (*VelocityGradient)(const SPHLoops *l, double gradient[]);                /* n x 9: sum (v_j - v_i)_a (m grad W)_b of vector */

@@ -102,17 +102,18 @@ static void Compact(const SPHLoops *l, const double distance[], double moments[]
   }
 }
 
-/* compact_ij *= (s_i + s_j)/2; diagonal_i = sum of the row */
-static void ScaleCompact(const SPHLoops *l, const double s[], double diagonal[])
+/* compact_ij *= SPHPairStretch; diagonal_i = sum of the row */
+static void ScaleCompact(const SPHLoops *l, const double N[], double diagonal[])
 {
 #pragma omp parallel for schedule(dynamic, 1)
   for (int c = 0; c < Chunks(l); c++) {
     for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
-      real  *row = (real *)l->compact + l->start[i];
-      double sum = 0;
+      const real *g   = (const real *)l->gradient + 3 * (size_t)l->start[i];
+      real       *row = (real *)l->compact + l->start[i];
+      double      sum = 0;
 
       for (int k = 0; k < l->count[i]; k++) {
-        row[k] *= (real)(0.5 * (s[i] + s[l->neighbour[l->start[i] + k]]));
+        row[k] *= SPHPairStretch(N + 6 * (size_t)i, N + 6 * (size_t)l->neighbour[l->start[i] + k], g + 3 * k);
         sum += (double)row[k];
       }
       diagonal[i] = sum;

@@ -27,6 +27,18 @@ BY_HD SPH_REAL SPHPairRate(const SPH_REAL v_i[3], const SPH_REAL v_j[3], const S
    without the two-cell modes that D D^T does not see [Cummins & Rudman 1999 eq. 21; Brookshaw 1985] */
 BY_HD SPH_REAL SPHPairLaplacian(SPH_REAL c, SPH_REAL p_i, SPH_REAL p_j) { return c * (p_i - p_j); }
 
+/* factor on c_ij for neighbourhoods that are stretched: e.(N_i + N_j)/2 e, e the direction of the pair's gradient g, N (xx xy xz yy yz zz) chosen by
+   SPHCompact_Internal() so that sum_j c_ij d d^T is nearer the identity: in a lattice stretched by 1.5 the Laplacian across is 0.48 of what the
+   corrected gradient sees without it, and a projection with less than half is unstable (ours) */
+BY_HD SPH_REAL SPHPairStretch(const double N_i[6], const double N_j[6], const SPH_REAL g[3])
+{
+  const double x = (double)g[0], y = (double)g[1], z = (double)g[2], g2 = x*x + y*y + z*z;
+  const double e = x*x*(N_i[0] + N_j[0]) + y*y*(N_i[3] + N_j[3]) + z*z*(N_i[5] + N_j[5]) +
+                   2.0*(x*y*(N_i[1] + N_j[1]) + x*z*(N_i[2] + N_j[2]) + y*z*(N_i[4] + N_j[4]));
+
+  return g2 > 0.0 ? (SPH_REAL)(e > 0.4*g2 ? 0.5*e/g2 : 0.2) : (SPH_REAL)1;
+}
+
 /* squared distance from i, at d_i from a plane, to the image of j, at d_j: r'^2 = r^2 + 4 d_i d_j, symmetric in i and j; with images of equal
    pressure added to c_ij no flux crosses the plane and the operator stays symmetric (ours) */
 BY_HD SPH_REAL SPHPairImage(SPH_REAL r2, SPH_REAL d_i, SPH_REAL d_j) { return r2 + (SPH_REAL)4*d_i*d_j; }

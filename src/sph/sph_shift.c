@@ -11,7 +11,18 @@
 
 #define SPH_SHIFT_STABLE 0.05 /* of h^2: a larger step of this explicit diffusion overshoots            */
 #define SPH_SHIFT_MOST  0.2 /* longest shift in a step [dx]                                             */
+#define SPH_SHIFT_FLAT   0.9  /* fullness below which particles are led aside                             */
+#define SPH_SHIFT_NUDGE  1.0  /* [dx] per unit of strain of a neighbourhood without thickness             */
 #define SPH_SHIFT_FULL  0.92 /* neighbourhoods less full than this are at a free surface                  */
+
+/* a lattice that is strained stays even, grad C = 0, until lines of particles break up at once: where a neighbourhood has been flattened,
+   each particle is led aside along a direction of its own, which breaks the symmetry while it is harmless */
+static void Nudge(SPH sph, PetscInt i, PetscReal strain, PetscReal dr[3])
+{
+  const PetscReal part = SPH_SHIFT_NUDGE * sph->params.spacing * strain * PetscMax(0.0, 1.0 - sph->compact.fullness[i] / SPH_SHIFT_FLAT);
+
+  for (int k = 0; k < 3; k++) dr[k] += part * sin(12.9898 * (double)sph->id[i] + 78.233 * k);
+}
 
 PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
 {
@@ -25,12 +36,14 @@ PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
   sph->table->Concentration(&sph->loops, SPHKernelW(sph->params.kernel, sph->params.spacing, sph->h), w->shift);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
-    const PetscReal *L = w->velocity_gradient + 9 * i, *G = sph->G + 3 * i;
+    const PetscReal *L = w->velocity_gradient + 9 * i;
     PetscReal       *dr = w->shift + 3 * i, rate2 = 0, C[3], length, v[3];
 
     for (int k = 0; k < 9; k++) rate2 += L[k] * L[k];
-    for (int k = 0; k < 3; k++) C[k] = dr[k] / rho0 + G[k] / (sph->wall_flux * rho0);
+    SPHWallConcentration_Internal(sph, i, C);
+    for (int k = 0; k < 3; k++) C[k] += dr[k] / rho0;
     for (int k = 0; k < 3; k++) dr[k] = -PetscMin(sph->shifting * dt * sqrt(rate2), SPH_SHIFT_STABLE) * h2 * C[k];
+    if (!sph->params.free_surface) Nudge(sph, i, dt * sqrt(rate2), dr);
     if (sph->params.free_surface && w->fullness[i] < SPH_SHIFT_FULL) dr[0] = dr[1] = dr[2] = 0.0;
     length = Norm3(dr);
     if (length > most)

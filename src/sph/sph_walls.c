@@ -51,6 +51,9 @@ static PetscReal OpenBut(int n, const int plane[], const PetscReal phi[], int ax
   return PetscMax(0.0, open[0]) * PetscMax(0.0, open[1]) * PetscMax(0.0, open[2]);
 }
 
+/* what the other walls leave of a wall's part in G: with images their flux is folded back, nothing is lost */
+static PetscReal FluxPart(SPH sph, PetscReal others) { return sph->wall_flux == 1.0 ? others : 1.0; }
+
 /* A particle deep in a wall is a particle at distance `least` for friction: the first layer settles at 0.15 to 0.25 dx */
 static PetscReal FrictionDistance(SPH sph, PetscReal d) { return PetscMax(d, 0.1 * sph->params.spacing); }
 
@@ -68,7 +71,7 @@ PetscErrorCode SPHFindPlanes_Internal(SPH sph)
 
     for (int k = 0; k < touched; k++) {
       const PetscReal c = OpenBut(touched, plane, phi, plane[k] / 2);
-      G[plane[k] / 2] += sph->wall_flux * rho0 * c * slope[k];
+      G[plane[k] / 2] += sph->wall_flux * rho0 * FluxPart(sph, c) * slope[k];
       if (!(sph->slip >> plane[k] & 1)) friction += SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
     }
     sph->open[i]          = OpenBut(touched, plane, phi, -1);
@@ -236,6 +239,7 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
       w->union_factor[t] *= sph->open_surfaces[i];
       sph->open_surfaces[i] *= PetscMax(0.0, 1.0 - contacts[s].phi[t]);
       if (sph->params.viscosity > 0) w->friction[t] = SurfaceFriction(sph, &contacts[s], t, w->union_factor[t]);
+      if (sph->wall_flux != 1.0) w->union_factor[t] = sph->wall_flux; // from here on the factor in G
     }
   }
 
@@ -243,11 +247,11 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
   if (n_surfaces > 0) {
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < n; i++)
-      for (int k = 0; k < 3; k++) sph->G[3 * i + k] = sph->open_surfaces[i] * sph->G_planes[3 * i + k];
+      for (int k = 0; k < 3; k++) sph->G[3 * i + k] = FluxPart(sph, sph->open_surfaces[i]) * sph->G_planes[3 * i + k];
     for (PetscInt s = 0; s < n_surfaces; s++) {
 #pragma omp parallel for schedule(static)
       for (PetscInt t = 0; t < contacts[s].n_touched; t++)
-        for (int k = 0; k < 3; k++) sph->G[3 * contacts[s].particle[t] + k] += sph->wall_flux * rho0 * sph->surfaces[s].union_factor[t] * contacts[s].grad[3 * t + k];
+        for (int k = 0; k < 3; k++) sph->G[3 * contacts[s].particle[t] + k] += rho0 * sph->surfaces[s].union_factor[t] * contacts[s].grad[3 * t + k];
     }
     sph->table->SetWalls(&sph->loops, sph->G);
   }
@@ -289,7 +293,7 @@ PetscErrorCode SPHWallRate_Internal(SPH sph)
         const PetscReal *v = q->velocity + 3 * q->proxy[b], *share = q->share + 3 * b;
         rate += share[0] * v[0] + share[1] * v[1] + share[2] * v[2];
       }
-      sph->wall_rate[q->particle[t]] += sph->wall_flux * rho0 * sph->surfaces[s].union_factor[t] * rate;
+      sph->wall_rate[q->particle[t]] += rho0 * sph->surfaces[s].union_factor[t] * rate;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -348,7 +352,7 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
           PetscReal      *f    = force + 3 * (plane[k] % 2);
 
           if (plane[k] / 2 != axis) continue;
-          if (!of_solver) f[axis] += PlanePressure(sph, i, plane[k], d[k], part * slope[k]);
+          if (!of_solver) f[axis] += PlanePressure(sph, i, plane[k], d[k], FluxPart(sph, part) * slope[k]);
           if (nu > 0 && !(sph->slip >> plane[k] & 1)) {
             const PetscReal friction = sph->mass * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
             for (int a = 0; a < 3; a++) f[a] += friction * (sph->v_star[3 * i + a] - v[a]);
@@ -372,7 +376,7 @@ PetscReal SPHPlanePressure_Internal(SPH sph, int i, int k)
   const int touched = TouchedPlanes(sph, sph->x + 3 * i, plane, phi, slope, d);
 
   for (int m = 0; m < touched; m++)
-    if (plane[m] == k) return PlanePressure(sph, i, k, d[m], OpenBut(touched, plane, phi, k / 2) * sph->open_surfaces[i] * slope[m]);
+    if (plane[m] == k) return PlanePressure(sph, i, k, d[m], FluxPart(sph, OpenBut(touched, plane, phi, k / 2) * sph->open_surfaces[i]) * slope[m]);
   return 0.0;
 }
 
@@ -390,7 +394,7 @@ static void SurfaceForces(SPH sph, SPHContacts *q, const SPHSurfaceWork *w)
     const PetscReal *x        = q->position + 3 * t, *grad = q->grad + 3 * t;
     const PetscReal  grad2 = grad[0] * grad[0] + grad[1] * grad[1] + grad[2] * grad[2], size = sqrt(grad2);
     const PetscReal  normal[3] = {size > 0 ? -grad[0] / size : 0.0, size > 0 ? -grad[1] / size : 0.0, size > 0 ? -grad[2] / size : 0.0};
-    const PetscReal  pressure  = sph->mass * WallPressure(sph, i, sph->wall_gradient ? SPHSurfaceDistance_Internal(sph, q, t) : 0.0, normal) / rho0 * sph->wall_flux * w->union_factor[t];
+    const PetscReal  pressure  = sph->mass * WallPressure(sph, i, sph->wall_gradient ? SPHSurfaceDistance_Internal(sph, q, t) : 0.0, normal) / rho0 * w->union_factor[t];
     const PetscReal  friction = nu > 0 && grad2 > 0 ? sph->mass * w->friction[t] / grad2 : 0.0;
     PetscReal        sum[3]   = {0, 0, 0};
 
