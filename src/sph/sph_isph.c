@@ -272,7 +272,7 @@ static PetscErrorCode Prepare(SPH sph, const SPHOperator *op)
       const PetscReal  div      = L[0] + L[4] + L[8];
       const PetscReal  square   = L[0] * L[0] + L[4] * L[4] + L[8] * L[8] + 2.0 * (L[1] * L[3] + L[2] * L[6] + L[5] * L[7]);
       const PetscReal  rate2    = Dot3(L, L) + Dot3(L + 3, L + 3) + Dot3(L + 6, L + 6);
-      const PetscReal  ahead    = dt * dt * rate2 > 0.0625 ? 0.125 / sqrt(rate2) : 0.5 * dt; // noise is not led into the future
+      const PetscReal  ahead    = dt * dt * rate2 > 0.0625 ? 0.125 / sqrt(rate2) : sph->step == 0 ? dt : 0.5 * dt; // noise is not led into the future
       const PetscBool  pressure = (PetscBool)(sph->root[i] > 0 && (!sph->params.free_surface || w->fullness[i] > SPH_SURFACE));
 
       sph->root[i]  = pressure ? sqrt(2.0 * rho0 * sph->root[i]) : 0.0;
