@@ -15,6 +15,7 @@ sys.dont_write_bytecode = True
 
 import fluid_claims
 import fluid_flows
+import fluid_closed
 import fluid_free
 import fluid_hard
 import fluid_krylov
@@ -35,6 +36,9 @@ SECTIONS = (
     ("drop", "A stretching drop", fluid_free.drop),
     ("column", "A collapsing column", fluid_free.column),
     ("krylov", "The pressure system, solved in many ways", fluid_krylov.krylov),
+    ("taylor_green", "Decaying vortices", fluid_closed.taylor_green),
+    ("cavity", "A cavity with a moving lid", fluid_closed.cavity),
+    ("patch", "A rotating square", fluid_closed.patch),
     ("marin", "A dam break against a box", fluid_marin.marin),
     ("sloshing", "Sloshing: the first impact", fluid_sloshing.sloshing),
     ("volume", "Sloshing: volume", fluid_sloshing.volume),

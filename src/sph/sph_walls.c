@@ -103,7 +103,7 @@ static PetscReal FromPlanes(SPH sph, int i, PetscReal drag[3], PetscReal *power)
   for (int k = 0; k < touched; k++) {
     const PetscReal *v = sph->plane_velocity + 3 * plane[k], c = OpenBut(touched, plane, phi, plane[k] / 2) * sph->open_surfaces[i];
 
-    rate += sph->wall_flux * rho0 * c * slope[k] * v[plane[k] / 2];
+    rate += sph->wall_flux * rho0 * FluxPart(sph, c) * slope[k] * v[plane[k] / 2];
     if (!drag || sph->slip >> plane[k] & 1) continue;
     const PetscReal friction = SPHWallFriction(nu, c * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
     for (int a = 0; a < 3; a++) {
