@@ -100,7 +100,7 @@ static void ShiftingKeepsALattice(void **state)
    4e-4 of the speed measured, is held to 2e-3 */
 static void VorticesDecayAsTheyShould(void **state)
 {
-  const PetscInt  n  = 12;
+  const PetscInt  n  = 16;
   const PetscReal dx = 1.0 / 16, lo[3] = {0, 0, 0}, hi[3] = {1, 1, 4 * dx}, k = 2.0 * PETSC_PI;
   SPH             sph = NewFluid(dx);
   PetscReal       t = 0, error = 0, size = 0, drift = 0;
