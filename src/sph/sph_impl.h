@@ -284,7 +284,7 @@ PETSC_INTERN PetscErrorCode SPHDestroyKSP_Internal(SPH sph);
 /* sph_isph.c */
 PETSC_INTERN PetscErrorCode SPHCompact_Internal(SPH sph, PetscReal diagonal[]);
 PETSC_INTERN PetscErrorCode SPHCompactDestroy_Internal(SPH sph);
-PETSC_INTERN void           SPHVelocityGradient_Internal(SPH sph, const PetscReal v[]);
+PETSC_INTERN void           SPHVelocityGradient_Internal(SPH sph, const PetscReal v[], PetscReal deviation[]);
 PETSC_INTERN void           SPHWallConcentration_Internal(SPH sph, PetscInt i, PetscReal C[3]);
 /* sph_shift.c */
 PETSC_INTERN PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt);

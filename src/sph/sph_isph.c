@@ -196,15 +196,15 @@ static void Correct(const PetscReal B[6], PetscReal per_rho, const PetscReal x[3
   y[2] = B[2] * a + B[4] * b + B[5] * c;
 }
 
-/* velocity_gradient[3 a + b] = d v_a/d x_b of a velocity field, exact where it is linear */
-void SPHVelocityGradient_Internal(SPH sph, const PetscReal v[])
+/* velocity_gradient[3 a + b] = d v_a/d x_b of a velocity field, exact where it is linear; deviation [n x 3, may be NULL]: from those around */
+void SPHVelocityGradient_Internal(SPH sph, const PetscReal v[], PetscReal deviation[])
 {
   SPHCompactWork *w       = &sph->compact;
   const int       n       = (int)sph->n;
   const PetscReal per_rho = 1.0 / sph->params.density;
 
   sph->table->SetVelocity(&sph->loops, v);
-  sph->table->VelocityGradient(&sph->loops, w->velocity_gradient);
+  sph->table->VelocityGradient(&sph->loops, w->velocity_gradient, deviation);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++)
     for (int a = 0; a < 3; a++) {
@@ -262,7 +262,7 @@ static PetscErrorCode Prepare(SPH sph, const SPHOperator *op)
 
   PetscFunctionBegin;
   PetscCall(SPHCompact_Internal(sph, sph->root));
-  SPHVelocityGradient_Internal(sph, sph->v_star);
+  SPHVelocityGradient_Internal(sph, sph->v_star, NULL);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < chunks; c++) {
     PetscReal *s = sph->partial + c * SPH_SUMS, s0 = 0, s1 = 0;

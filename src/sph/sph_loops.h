@@ -63,7 +63,8 @@ typedef struct {
   void (*ScaleCompact)(const SPHLoops *l, const double N[], double diagonal[]);  /* compact_ij *= SPHPairStretch of N (6 per particle); sums of rows */
   void (*Laplacian)(const SPHLoops *l, double factor, const double scale[], double out[]); /* factor scale sum c_ij (p_i - p_j) */
   void (*Difference)(const SPHLoops *l);                                         /* vector = sum (p_j - p_i) m grad W    */
-  void (*VelocityGradient)(const SPHLoops *l, double gradient[]);                /* n x 9: sum (v_j - v_i)_a (m grad W)_b of vector */
+  /* n x 9: sum (v_j - v_i)_a (m grad W)_b of vector; deviation, n x 3 or NULL: sum c_ij (v_i - v_j) / sum c_ij */
+  void (*VelocityGradient)(const SPHLoops *l, double gradient[], double deviation[]);
   void (*Concentration)(const SPHLoops *l, double w0, double gradient[]);        /* n x 3: sum weight m grad W           */
   void (*Smooth)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum (m/rho0) (v_j - v_i) W of vector */
   void (*Repulsion)(const SPHLoops *l, const double x[], double k, double distance, double n, double a[]); /* a -= sum k (W/W(distance))^n m grad W, particles at x */

@@ -164,8 +164,24 @@ static void Difference(const SPHLoops *l)
   }
 }
 
-/* gradient_i[3 a + b] = sum_j (v_j - v_i)_a (m grad W_ij)_b of vector */
-static void VelocityGradient(const SPHLoops *l, double out[])
+/* how far the vector of particle i is from those around it, weighted by compact */
+static void Deviation(const SPHLoops *l, int i, double out[3])
+{
+  const real *v = (const real *)l->vector, *row = (const real *)l->compact + l->start[i];
+  const int  *list = l->neighbour + l->start[i];
+  const Vec4  vi   = Load4(v + 4 * (size_t)i);
+  Vec4        sum  = {0};
+  real        all  = 0;
+
+  for (int k = 0; k < l->count[i]; k++) {
+    sum += row[k] * (vi - Load4(v + 4 * (size_t)list[k]));
+    all += row[k];
+  }
+  for (int a = 0; a < 3; a++) out[a] = all > 0 ? (double)(sum[a] / all) : 0.0;
+}
+
+/* out_i[3 a + b] = sum_j (v_j - v_i)_a (m grad W_ij)_b of vector; deviation may be NULL */
+static void VelocityGradient(const SPHLoops *l, double out[], double deviation[])
 {
   const real *v = (const real *)l->vector, *gradient = (const real *)l->gradient;
 
@@ -184,6 +200,7 @@ static void VelocityGradient(const SPHLoops *l, double out[])
         s1 += (vj[1] - vi[1]) * w;
         s2 += (vj[2] - vi[2]) * w;
       }
+      if (deviation) Deviation(l, i, deviation + 3 * (size_t)i);
       for (int b = 0; b < 3; b++) {
         out[9 * (size_t)i + (size_t)b]     = (double)s0[b];
         out[9 * (size_t)i + (size_t)b + 3] = (double)s1[b];

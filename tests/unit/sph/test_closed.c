@@ -71,7 +71,7 @@ static void GradientsOfLinearFieldsAreExact(void **state)
   assert_petsc(SPHCompact_Internal(sph, diagonal));
   for (int i = 0; i < 125; i++)
     for (int a = 0; a < 3; a++) v[3 * i + a] = 0.7 + Dot3(L + 3 * a, sph->x + 3 * i);
-  SPHVelocityGradient_Internal(sph, v);
+  SPHVelocityGradient_Internal(sph, v, NULL);
   for (int i = 0; i < 125; i++)
     for (int k = 0; k < 9; k++) assert_close(sph->compact.velocity_gradient[9 * i + k], L[k], 1e-10, 2.0);
   assert_petsc(SPHDestroy(&sph));
