@@ -11,8 +11,8 @@
 
 #define SPH_SHIFT_STABLE 0.05 /* of h^2: a larger step of this explicit diffusion overshoots            */
 #define SPH_SHIFT_MOST  0.2 /* longest shift in a step [dx]                                             */
-#define SPH_SHIFT_FLAT   0.9  /* fullness below which particles are led aside                             */
-#define SPH_SHIFT_NUDGE  1.0  /* [dx] per unit of strain of a neighbourhood without thickness             */
+#define SPH_SHIFT_FLAT   1.0  /* fullness below which particles are led aside                             */
+#define SPH_SHIFT_NUDGE  3.0  /* [dx] per unit of strain of a neighbourhood without thickness             */
 #define SPH_SHIFT_FULL  0.92 /* neighbourhoods less full than this are at a free surface                  */
 
 /* a lattice that is strained stays even, grad C = 0, until lines of particles break up at once: where a neighbourhood has been flattened,
@@ -25,11 +25,28 @@ static void Nudge(SPH sph, PetscInt i, PetscReal strain, PetscReal dr[3])
 }
 
 /* A particle whose velocity is not that of its surroundings is not seen by the divergence, and a shift along its own gradient would feed it:
-   it is told by its deviation from the others, which a smooth flow makes small beside h |grad v| (0.05 in vortices of 16 dx), takes no shift's velocity,
+   it is told by its deviation from the others, which a smooth flow makes small beside h times the local and half the rms |grad v| (0.05 in vortices of 16 dx),
+   takes no shift's velocity,
    and is led back. 0 no stray, 1 a stray. */
 static PetscReal Stray(PetscReal deviation, PetscReal expected)
 {
   return expected > 0 ? PetscMin(1.0, PetscMax(0.0, 4.0 * deviation / expected - 1.0)) : 0.0;
+}
+
+/* rms of |grad v| [1/s] */
+static PetscReal TypicalRate(SPH sph)
+{
+  const int n = (int)sph->n, chunks = (int)SPH_CHUNKS(n);
+  PetscReal sum;
+
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; c++) {
+    PetscReal s = 0;
+    for (int k = 9 * SPH_FIRST(c); k < 9 * SPH_LAST(c, n); k++) s += PetscSqr(sph->compact.velocity_gradient[k]);
+    sph->partial[c * SPH_SUMS] = s;
+  }
+  SPHSumPartials(sph, 1, &sum);
+  return sqrt(sum / n);
 }
 
 PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
@@ -37,10 +54,12 @@ PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
   SPHCompactWork *w    = &sph->compact;
   const int       n    = (int)sph->n;
   const PetscReal rho0 = sph->params.density, h2 = sph->h * sph->h, most = SPH_SHIFT_MOST * sph->params.spacing;
+  PetscReal       typical;
 
   PetscFunctionBegin;
   if (sph->method != &SPHSolverISPH) PetscCall(SPHCompact_Internal(sph, sph->Adirection)); // isph has it from its solve
   SPHVelocityGradient_Internal(sph, sph->v, sph->accel);
+  typical = TypicalRate(sph);
   sph->table->Concentration(&sph->loops, SPHKernelW(sph->params.kernel, sph->params.spacing, sph->h), w->shift);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; i++) {
@@ -57,7 +76,7 @@ PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
     if (length > most)
       for (int k = 0; k < 3; k++) dr[k] *= most / length;
     Mul3(L, dr, v);
-    const PetscReal stray = Stray(Norm3(sph->accel + 3 * i), sph->h * sqrt(rate2));
+    const PetscReal stray = Stray(Norm3(sph->accel + 3 * i), sph->h * (sqrt(rate2) + 0.5 * typical));
     for (int k = 0; k < 3; k++) {
       sph->x[3 * i + k] += dr[k];
       sph->v[3 * i + k] += (1.0 - stray) * v[k] - 0.2 * stray * sph->accel[3 * i + k];
