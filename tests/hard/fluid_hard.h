@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "sph/sph.h"
+#include "sph/sph_impl.h"
 #include "unit/sph/fluid.h"
 
 #define LONGEST 60.0 /* [s of the processor] a case that takes longer has hung */
@@ -81,15 +81,13 @@ static inline void HardBlock(SPH sph, const PetscReal from[3], const PetscInt n[
 static inline void HardLook(SPH sph, HardRun *r, PetscReal start[3], PetscReal impulse[3], PetscReal dt)
 {
   const PetscReal *x;
-  PetscReal        min[3], max[3], force[18], mass, off = 0.0;
-  unsigned         walls, periodic;
+  PetscReal        force[18], mass, sign, off = 0.0;
   PetscInt         n, outside = 0;
   SPHParams       *par;
   SPHStats         s;
 
   assert_petsc(SPHGetSize(sph, &n));
   assert_petsc(SPHGetState(sph, &x, NULL, NULL, NULL, NULL));
-  assert_petsc(SPHGetDomain(sph, min, max, &walls, &periodic));
   assert_petsc(SPHGetParams(sph, &par));
   assert_petsc(SPHGetMass(sph, &mass));
   assert_petsc(SPHGetWallForces(sph, force));
@@ -97,7 +95,7 @@ static inline void HardLook(SPH sph, HardRun *r, PetscReal start[3], PetscReal i
   for (PetscInt i = 0; i < n; i++) {
     PetscReal gap = PETSC_MAX_REAL;
     for (int k = 0; k < 6; k++)
-      if (walls >> k & 1) gap = PetscMin(gap, k % 2 ? max[k / 2] - x[3 * i + k / 2] : x[3 * i + k / 2] - min[k / 2]);
+      if (sph->walls >> k & 1) gap = PetscMin(gap, SPHPlaneDistance(sph, k, x + 3 * i, &sign)); // of planes where they are now
     r->deepest = PetscMin(r->deepest, gap / par->spacing);
     outside += !(gap >= 0.0); // not a number is outside too
   }
