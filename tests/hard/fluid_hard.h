@@ -9,7 +9,7 @@
 #include "sph/sph_impl.h"
 #include "unit/sph/fluid.h"
 
-#define LONGEST 60.0 /* [s of the processor] a case that takes longer has hung */
+#define LONGEST 20.0 /* [s of the processor] a case that takes longer has hung */
 
 typedef struct {
   PetscErrorCode ierr;                   /* 0, BY_ERR_BREAKDOWN or BY_ERR_INPUT                                    */

@@ -213,33 +213,30 @@ static void ExplosionStops(void **state)
   NoFailures();
 }
 
-/* water between two plates, of which the upper comes down to half a spacing from the lower: it must leave at the sides; and in a full closed box,
-   where it cannot leave, it must hold, compressed, or stop */
+/* water between two plates, of which the upper comes down: it must leave at the sides, until no two layers fit between them, where the run ends */
 static void ClosingPlates(void **state)
 {
   const char *const *solvers = HardSolvers();
-  const PetscReal    dx = 0.02;
+  const PetscReal    dx = 0.02, hi[3] = {0.2, 0.2, 0.12}, from[3] = {0.5 * dx, 0.5 * dx, 0.5 * dx};
+  const PetscInt     n[3] = {10, 10, 6};
 
   (void)state;
-  for (int closed = 0; closed < 2; closed++) {
-    const PetscReal hi[3] = {0.2, 0.2, closed ? 0.16 : 0.12}, from[3] = {0.5 * dx, 0.5 * dx, 0.5 * dx};
-    const PetscInt  n[3]  = {10, 10, closed ? 8 : 6};
-
+  for (int apart = 0; apart < 2; apart++) {
     for (int s = 0; solvers[s]; s++) {
       SPH          sph;
       HardRun      r;
       Motion       press;
-      MotionParams params = {.translation = {0, 0, closed ? -0.1 * hi[2] : 0.5 * dx - hi[2]}, .course = {.kind = COURSE_RAMP, .duration = 0.2}};
+      MotionParams params = {.translation = {0, 0, (apart ? 2.0 : 0.5) * dx - hi[2]}, .course = {.kind = COURSE_RAMP, .duration = 0.2}};
       char         figures[200];
 
       if (HardSkips(solvers[s])) continue;
       assert_petsc(MotionCreate("press", &params, &press));
-      sph = HardFluid(s, dx, hi, closed ? ALL_WALLS : 48);
+      sph = HardFluid(s, dx, hi, 48);
       assert_petsc(SPHSetWallMotion(sph, 32, &press));
       HardBlock(sph, from, n, dx, NULL);
-      r = HardGo(sph, PETSC_TRUE, 0.25);
-      snprintf(figures, sizeof figures, "largest speed %.1f m/s, largest compression at the end %.1e", (double)r.speed, (double)r.compression);
-      HardTell(closed ? "full closed box, one wall comes in by a tenth" : "two plates close to half a spacing", solvers[s], &r, figures, (PetscBool)(r.speed < 200.0));
+      r = HardGo(sph, PETSC_TRUE, 0.2);
+      snprintf(figures, sizeof figures, "to %.2f s, largest speed %.1f m/s, largest compression at the end %.1e", (double)r.time, (double)r.speed, (double)r.compression);
+      HardTell(apart ? "two plates close to two spacings" : "two plates close to half a spacing", solvers[s], &r, figures, (PetscBool)(r.speed < 50.0));
       assert_petsc(SPHDestroy(&sph));
       assert_petsc(MotionDestroy(&press));
     }
