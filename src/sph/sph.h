@@ -9,7 +9,7 @@ typedef struct _p_SPH *SPH;
 
 typedef enum {
   SPH_SOLVER_AUTO,         /* iisph with a free surface, isph without                          */
-  SPH_SOLVER_IISPH,        /* implicit, p >= 0 by projected conjugate gradients (sph_iisph.c)  */
+  SPH_SOLVER_IISPH,        /* implicit, p >= 0 by projected Newton-Krylov steps (sph_iisph.c)  */
   SPH_SOLVER_IISPH_JACOBI, /* the same system by the paper's relaxed Jacobi (sph_iisph.c)      */
   SPH_SOLVER_ISPH,         /* projection with a compact Laplacian (sph_isph.c)                 */
   SPH_SOLVER_DFSPH,        /* divergence-free SPH (sph_dfsph.c)                                */
