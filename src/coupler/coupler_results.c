@@ -149,6 +149,7 @@ static PetscErrorCode SummaryFluid(Coupler c, CouplerResults *r, Json json)
   static const char *const precisions[] = {"single", "double"};
   const char              *solver;
   SPHParams               *params;
+  SPHStats                 stats;
   PetscInt                 n;
   PetscReal                seconds = 0.0;
 
@@ -162,6 +163,11 @@ static PetscErrorCode SummaryFluid(Coupler c, CouplerResults *r, Json json)
   PetscCall(JsonString(json, "solver", solver));
   PetscCall(JsonString(json, "precision", precisions[params->precision]));
   PetscCall(JsonReal(json, "iterations_mean", c->iterations_sum / PetscMax(1, c->step)));
+  PetscCall(SPHGetStats(c->sph, &stats));
+  if (stats.viscous_solves) {
+    PetscCall(JsonInt(json, "viscosity_solves", stats.viscous_solves));
+    PetscCall(JsonReal(json, "viscosity_iterations_mean", (PetscReal)stats.viscous_iterations / (PetscReal)stats.viscous_solves));
+  }
   PetscCall(JsonReal(json, "density_error_mean", r->compression_mean_sum / PetscMax(1, r->n_rows)));
   PetscCall(JsonReal(json, "density_error_max", r->compression_max));
   PetscCall(JsonReal(json, "seconds_per_step", seconds / PetscMax(1, r->steps)));

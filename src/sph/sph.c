@@ -148,6 +148,25 @@ static void LatticeSums(int kernel, int gradient_kernel, PetscReal dx, PetscReal
       }
 }
 
+/* sum over a full cubic lattice of the pairs' weights of the viscous operator, largest direction, for nu = 1 [1/m^2] */
+static PetscReal ViscousNorm(const SPHParams *par, int kernel, PetscReal h, PetscReal mass)
+{
+  const PetscReal dx = par->spacing;
+  const int       n = (int)ceil(h / dx);
+  PetscReal       sum = 0.0;
+
+  for (int k = -n; k <= n; k++)
+    for (int j = -n; j <= n; j++)
+      for (int i = -n; i <= n; i++) {
+        const PetscReal r2 = dx * dx * (double)(i * i + j * j + k * k), f = SPHPairGradient(kernel, mass, sqrt(r2), h);
+
+        if (r2 == 0.0 || f == 0.0) continue;
+        if (par->viscous_form == SPH_VISCOUS_MONAGHAN) sum -= SPHPairViscosityMonaghan(1.0 / par->density, 1.0 / f, r2, h) * PetscSqr(f * dx * k);
+        else sum -= SPHPairViscosityMorris(1.0 / par->density, f * r2, r2, h);
+      }
+  return sum;
+}
+
 /* value of a table at support 1.5, 1.75, ... 3 dx, linear between its entries */
 static PetscReal AtSupport(const PetscReal table[7], PetscReal support)
 {
@@ -186,7 +205,12 @@ static PetscErrorCode AllocateState(SPH sph)
   PetscCall(SPHAddArray_Internal(sph, &sph->id_alt, sizeof(PetscInt)));
   PetscCall(SPHAddArray_Internal(sph, &sph->order, sizeof(PetscInt)));
   if (sph->params.vorticity_confinement > 0) PetscCall(SPHAddArray_Internal(sph, &sph->confine, 6 * one));
-  if (sph->params.viscosity > 0) PetscCall(SPHAddArray_Internal(sph, &sph->friction_planes, one));
+  if (sph->params.viscosity > 0) {
+    PetscCall(SPHAddArray_Internal(sph, &sph->friction_planes, one));
+    PetscCall(SPHAddArray_Internal(sph, &sph->volume, one));
+    PetscCall(SPHAddArray_Internal(sph, &sph->push, 3 * one));
+    PetscCall(SPHAddArray_Internal(sph, &sph->v_viscous, 3 * one));
+  }
   if (sph->frame) PetscCall(SPHAddArray_Internal(sph, &sph->frame_kick, 3 * one));
 
   // the neighbour list is allocated when it is first built
@@ -235,6 +259,7 @@ PetscErrorCode SPHSetUp(SPH sph)
   if (sph->particle_volume > 0) sph->mass *= sph->particle_volume / PetscPowReal(par->spacing, 3);
   sph->wall_factor = par->wall_factor > 0 ? par->wall_factor : SPHWallFactor(par->kernel, par->support);
   sph->mu_pairs    = par->viscosity / ViscosityPart(par->viscous_form, sph->gradient_kernel, par->support);
+  sph->viscous_norm = ViscousNorm(par, sph->gradient_kernel, sph->h, sph->mass) / ViscosityPart(par->viscous_form, sph->gradient_kernel, par->support);
   sph->relax_time  = par->relax_time;
   if (sph->relax_time == 0.0 && sph->method->relaxes) {
     const PetscReal speed = PetscMax(sqrt(g * sph->h), sph->flow_speed);
@@ -304,7 +329,12 @@ PetscErrorCode SPHDestroy(SPH *sph)
   PetscCall(PetscFree(s->loops.grid.start));
   free(s->loops.neighbour);
   free(s->loops.gradient);
-  for (PetscInt k = 0; k < s->surfaces_allocated; k++) PetscCall(PetscFree2(s->surfaces[k].union_factor, s->surfaces[k].friction));
+  free(s->loops.viscous);
+  for (PetscInt k = 0; k < s->surfaces_allocated; k++) {
+    PetscCall(PetscFree2(s->surfaces[k].union_factor, s->surfaces[k].friction));
+    PetscCall(PetscFree(s->surfaces[k].velocity));
+  }
+  PetscCall(SPHViscousDestroy_Internal(s));
   PetscCall(PetscFree(s->surfaces));
   PetscCall(PetscFree(s->patches));
   PetscCall(PetscHeaderDestroy(sph));

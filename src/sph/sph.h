@@ -21,6 +21,7 @@ typedef enum { SPH_KERNEL_CUBIC_SPLINE, SPH_KERNEL_WENDLAND_C2, SPH_KERNEL_POLY6
 typedef enum { SPH_NORM_AUTO, SPH_NORM_MEAN, SPH_NORM_LARGEST } SPHNorm;
 typedef enum { SPH_VISCOUS_MORRIS, SPH_VISCOUS_MONAGHAN } SPHViscousForm;
 typedef enum { SPH_BOUNDED_NEWTON, SPH_BOUNDED_MPRGP } SPHBounded;
+typedef enum { SPH_VISCOSITY_AUTO, SPH_VISCOSITY_EXPLICIT, SPH_VISCOSITY_IMPLICIT } SPHViscositySolver; /* auto: implicit where explicit would halve the step */
 typedef enum { SPH_PRECISION_SINGLE, SPH_PRECISION_DOUBLE } SPHPrecision;
 
 /* Parameters of the section `sph:`; SPHKeys[] (sph_keys.c) declares each with unit, default and range. */
@@ -57,6 +58,7 @@ typedef struct {
   int       kernel;           /* SPHKernelType of density                                                */
   int       gradient_kernel;  /* of every gradient, at pairs and walls: 0 = the same, else SPHKernelType + 1 */
   int       viscous_form;     /* SPHViscousForm                                                          */
+  int       viscosity_solver; /* SPHViscositySolver                                                        */
   int       precision;        /* SPHPrecision of the pair loops; positions and velocities are kept in double */
   PetscBool settle;           /* start from rest under hydrostatic pressure                              */
   Names     fill;             /* names of blocks sph.<name>: read by the coupler's scene builder         */
@@ -224,6 +226,7 @@ typedef struct {
   PetscReal viscous_loss;          /* [J] since the start                                                  */
   PetscReal wall_work, frame_work; /* [J] done on the fluid since the start by planes that move, and by the motion of the tank */
   PetscInt  iterations;            /* of the last pressure solve                                           */
+  PetscInt  viscous_solves, viscous_iterations; /* implicit viscosity, by this process since its start     */
   PetscBool converged;             /* of the last pressure solve                                           */
   PetscReal body_force[3];         /* of the mean-velocity controller [m/s^2]                              */
   PetscInt  particles;             /* buffers of openings included                                         */

@@ -257,6 +257,8 @@ PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
   stats->wall_work        = sph->wall_work;
   stats->frame_work       = sph->frame_work;
   stats->iterations       = sph->iterations;
+  stats->viscous_solves     = sph->viscous_solves;
+  stats->viscous_iterations = sph->viscous_iterations;
   stats->converged        = sph->converged;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

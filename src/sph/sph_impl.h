@@ -17,10 +17,14 @@
 #define SPH_LAST(c, n) (((c) + 1) * SPH_CHUNK < (n) ? ((c) + 1) * SPH_CHUNK : (n))
 #define SPH_CHUNKS(n)  (((n) + SPH_CHUNK - 1) / SPH_CHUNK)
 
+typedef struct _SPHViscous *SPHViscous;
+
 /* what friction of walls needs of one touched particle of a surface */
 typedef struct {
   PetscReal *union_factor; /* c of SPHGetUnionFactors, n_touched [1] */
   PetscReal *friction;     /* k of SPHWallFriction, n_touched [1/s]  */
+  PetscReal *velocity;     /* proxies' velocities that friction saw, n_proxies x 3 [m/s]; viscous flows only */
+  PetscInt   proxies;      /* allocated                              */
   PetscInt   capacity;     /* elements allocated                     */
 } SPHSurfaceWork;
 
@@ -118,6 +122,7 @@ struct _p_SPH {
   PetscReal prototype;               /* sum |m grad W|^2 over a full lattice [kg^2/m^8]  */
   PetscReal sound_speed;             /* [m/s] of wcsph, else 0                           */
   PetscReal relax_time;              /* [s]; 0: correct all at once; negative: 10 dt     */
+  PetscReal viscous_norm;            /* K_ii of a full lattice over nu [1/m^2]           */
   PetscReal mu_pairs;                /* viscosity that the pair loop needs to show the fluid's [Pa s] */
   PetscReal flow_speed;              /* that the scene prescribes: mean velocity, openings [m/s] */
   PetscReal filter_rate, filter_norm; /* [1/s], [kg^2/m^8]                               */
@@ -148,7 +153,12 @@ struct _p_SPH {
   PetscReal *rate;                   /* n, D v* without the walls' own motion [kg/(m^3 s)] */
   PetscReal *wall_rate;              /* n, sum_b rho0 c share . v_b                      */
   PetscReal *confine;                /* 2 n x 3, vorticity [1/s] and slope of its size; confinement only */
-  PetscReal *friction_planes;        /* n, k of the planes [1/s]; viscous flows only     */
+  PetscReal *friction_planes;        /* n, k of the planes [1/s]; viscous flows only, like what follows */
+  PetscReal *volume;                 /* n, 1/rho as viscosity sees it [m^3/kg]           */
+  PetscReal *push;                   /* n x 3, sum_k k v_wall of walls in motion [m/s^2] */
+  PetscReal *v_viscous;              /* n x 3, velocity that friction acts on [m/s]      */
+  SPHViscous viscous;                /* of the implicit solve (sph_viscosity.c), or NULL */
+  PetscInt   viscous_solves, viscous_iterations; /* since the start of this process      */
 
   /* pressure solve; y = p~/scale, root = 1/scale or 0 */
   PetscReal *rhs, *root, *scale, *y, *residual, *direction, *Adirection, *p_tilde, *response;
@@ -254,6 +264,8 @@ PETSC_INTERN PetscReal      SPHOpenSolid_Internal(SPH sph, int side, const Petsc
 
 /* sph_viscosity.c */
 PETSC_INTERN PetscErrorCode SPHViscousPredict_Internal(SPH sph, PetscReal dt);
+PETSC_INTERN PetscReal      SPHViscousStep_Internal(SPH sph);
+PETSC_INTERN PetscErrorCode SPHViscousDestroy_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHFilterPredict_Internal(SPH sph, PetscReal dt);
 
 /* sph_smooth.c */

@@ -7,6 +7,7 @@ static const char *const Gradients[]  = {"same", "cubic_spline", "wendland_c2", 
 static const char *const Norms[]      = {"auto", "mean", "largest", NULL};
 static const char *const Viscous[]    = {"morris", "monaghan", NULL};
 static const char *const Bounded[]    = {"newton", "mprgp", NULL};
+static const char *const Stepping[]   = {"auto", "explicit", "implicit", NULL};
 static const char *const Precisions[] = {"single", "double", NULL};
 
 #define FIELD(f) offsetof(SPHParams, f)
@@ -48,6 +49,8 @@ const Key SPHKeys[] = {
   {"kernel", KEY_CHOICE, FIELD(kernel), "", "cubic_spline", 0, 0, 0, Kernels, "smoothing kernel"},
   {"gradient_kernel", KEY_CHOICE, FIELD(gradient_kernel), "", "same", 0, 0, 0, Gradients, "kernel of all gradients, where it is not that of density (Mueller 2003: poly6 with spiky)"},
   {"viscous_form", KEY_CHOICE, FIELD(viscous_form), "", "morris", 0, 0, 0, Viscous, "form of viscosity: morris is the more accurate at walls, monaghan keeps angular momentum"},
+  {"viscosity_solver", KEY_CHOICE, FIELD(viscosity_solver), "", "auto", 0, 0, 0, Stepping,
+   "implicit: conjugate gradients, any step is stable; auto = implicit where the explicit one would halve the step or is not stable"},
   {"precision", KEY_CHOICE, FIELD(precision), "", "single", 0, 0, 0, Precisions, "of the pair loops; positions and velocities are kept in double"},
   {"settle", KEY_BOOL, FIELD(settle), "", "false", 0, 0, 0, NULL, "before the run, bring water that can stay where it is to rest: particles in place, pressure hydrostatic"},
   {"inflow", KEY_NAMES, FIELD(inflow), "", "", 0, 0, 0, NULL, "names of openings through which water enters, each a section sph.<name>"},

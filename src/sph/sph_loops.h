@@ -32,6 +32,7 @@ typedef struct {
   int          *neighbour;   /* n_chunks SPH_PAIR_CHUNK capacity                         */
   void         *gradient;    /* real, 3 per slot: m grad_i W_ij [kg/m^4]                 */
   void         *compact;     /* real, 1 per slot: c_ij of SPHPairLaplacian [kg/m^5]; NULL unless the solver is isph */
+  void         *viscous;     /* real, a slot: weight of a pair's viscosity; viscous fluids only */
   void         *near_x;      /* real, 3 x n: positions from the grid's corner, x.. y.. z.. */
   void         *pressure;    /* real, n: p~                                              */
   void         *vector;      /* real, 4 per particle: acceleration or velocity           */
@@ -39,8 +40,6 @@ typedef struct {
   const unsigned char *held; /* n, SPH_LOOPS_HELD where pressure moves nothing; or NULL  */
 } SPHLoops;
 
-/* forms of the viscous pair loop: the first two as SPHViscousForm; Monaghan's between pairs that approach */
-enum { SPH_PAIRS_MORRIS, SPH_PAIRS_MONAGHAN, SPH_PAIRS_APPROACHING };
 
 /* A table of loops. Every entry must be filled; status 0 is success. */
 typedef struct {
@@ -56,7 +55,10 @@ typedef struct {
   void (*GetVector)(const SPHLoops *l, double a[]);                              /* vector -> n x 3                      */
   void (*Rate)(const SPHLoops *l, double factor, const double scale[], double rate[]); /* factor scale D vector          */
   void (*Diagonal)(const SPHLoops *l, double diagonal[]);                        /* of D D^T                             */
-  void (*Viscosity)(const SPHLoops *l, int form, double mu_over_rho2, double a[]);  /* a += viscous acceleration of vector */
+  void (*Artificial)(const SPHLoops *l, double mu_over_rho2, double a[]);        /* a += Monaghan's viscous acceleration of vector, approaching pairs alone */
+  void (*ViscousWeights)(const SPHLoops *l, int central, double mu, const double volume[]); /* viscous = weights of the pairs, from 1/rho of each particle */
+  void (*Viscous)(const SPHLoops *l, int central, const double v[], double a[]); /* a = viscous acceleration of v, n x 3; in double, so that stiff flows lose nothing */
+  void (*ViscousDiagonal)(const SPHLoops *l, int central, double diagonal[]);    /* -da_i/dv_i of it, n x 3              */
   void (*Filter)(const SPHLoops *l, double factor, double a[]);                  /* a += factor sum [(v_i - v_j) . g] g of vector */
   /* compact Laplacian and corrected gradients; distance: SPH_IMAGES per particle [m], >= h where there is no wall */
   void (*Compact)(const SPHLoops *l, const double distance[], double moments[], double trace[]); /* -> compact; sum c d d^T (6), its trace with images */

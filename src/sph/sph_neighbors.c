@@ -162,11 +162,14 @@ static PetscErrorCode AllocateList(SPH sph, int capacity)
   PetscCheck(slots < 2147483647, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%zu neighbours do not fit 32-bit indices", slots);
   free(l->neighbour);
   free(l->gradient);
+  free(l->viscous);
+  l->viscous       = NULL;
   l->capacity      = capacity;
   sph->list_chunks = chunks;
   l->neighbour = malloc(sizeof(int) * slots);
   l->gradient  = malloc((size_t)sph->table->real_size * (3 * slots + 4));
-  PetscCheck(l->neighbour && l->gradient, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %zu neighbours", slots);
+  if (sph->params.viscosity > 0) l->viscous = malloc((size_t)sph->table->real_size * slots);
+  PetscCheck(l->neighbour && l->gradient && (l->viscous || !(sph->params.viscosity > 0)), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %zu neighbours", slots);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -352,8 +352,8 @@ static void Diagonal(const SPHLoops *l, double diagonal[])
   }
 }
 
-/* a_i += viscous acceleration by a form of sph_loops.h */
-static void Viscosity(const SPHLoops *l, int form, double mu_over_rho2, double a[])
+/* a_i += Monaghan's viscous acceleration of pairs that approach each other: artificial viscosity */
+static void Artificial(const SPHLoops *l, double mu_over_rho2, double a[])
 {
   const real *v = (const real *)l->vector, *gradient = (const real *)l->gradient, h = (real)l->h, mu = (real)mu_over_rho2;
 
@@ -368,20 +368,95 @@ static void Viscosity(const SPHLoops *l, int form, double mu_over_rho2, double a
       for (int k = 0; k < l->count[i]; k++, g += 3) {
         const int  j = list[k];
         const Vec4 v_ij = vi - Load4(v + 4 * (size_t)j);
-        real       r2 = 0, v_dot_x = 0, x_dot_g = 0;
+        real       r2 = 0, v_dot_x = 0;
 
         for (int q = 0; q < 3; q++) {
           double dx = l->x[3*i + q] - l->x[3*j + q];
           if (l->grid.periodic[q]) dx -= l->grid.period[q] * rint(dx / l->grid.period[q]);
           r2 += (real)(dx * dx);
           v_dot_x += v_ij[q] * (real)dx;
-          x_dot_g += g[q] * (real)dx;
         }
-        if (form == SPH_PAIRS_APPROACHING && v_dot_x > 0) v_dot_x = 0;
-        if (form != SPH_PAIRS_MORRIS) sum += SPHPairViscosityMonaghan(mu, v_dot_x, r2, h) * Load4(g);
-        else sum += SPHPairViscosityMorris(mu, x_dot_g, r2, h) * v_ij;
+        if (v_dot_x < 0) sum += SPHPairViscosityMonaghan(mu, v_dot_x, r2, h) * Load4(g);
       }
       for (int q = 0; q < 3; q++) a[3*i + q] += (double)sum[q];
+    }
+  }
+}
+
+/* weights of all pairs, by Monaghan's form when `central`, else by Morris's */
+static void ViscousWeights(const SPHLoops *l, int central, double mu, const double volume[])
+{
+  const real *gradient = (const real *)l->gradient, h = (real)l->h;
+  real       *weight = (real *)l->viscous;
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++) {
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+      for (int k = l->start[i]; k < l->start[i] + l->count[i]; k++) {
+        const int   j = l->neighbour[k];
+        const real *g = gradient + 3 * (size_t)k, mu_over_rho2 = (real)(mu * (volume[i] * volume[j]));
+        real        r2 = 0, x_dot_g = 0;
+
+        for (int q = 0; q < 3; q++) {
+          double dx = l->x[3*i + q] - l->x[3*j + q];
+          if (l->grid.periodic[q]) dx -= l->grid.period[q] * rint(dx / l->grid.period[q]);
+          r2 += (real)(dx * dx);
+          x_dot_g += g[q] * (real)dx;
+        }
+        // v . x = (v . g) r^2/(x . g); at the rim of the kernel the gradient is nothing and so is its part
+        if (!central) weight[k] = SPHPairViscosityMorris(mu_over_rho2, x_dot_g, r2, h);
+        else weight[k] = x_dot_g < (real)-1e-24 ? SPHPairViscosityMonaghan(mu_over_rho2, r2 / x_dot_g, r2, h) : 0;
+      }
+    }
+  }
+}
+
+/* a_i = sum_j w v_ij (Morris), sum_j w (v_ij . g) g (Monaghan). Differences and sums are double whatever `real` is: a stiff flow is the
+   small difference of large velocities, and momentum stays pair by pair. */
+static void Viscous(const SPHLoops *l, int central, const double v[], double a[])
+{
+  const real *gradient = (const real *)l->gradient, *weight = (const real *)l->viscous;
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++) {
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+      const double vx = v[3*i], vy = v[3*i + 1], vz = v[3*i + 2];
+      double       x = 0, y = 0, z = 0;
+
+      for (int k = l->start[i]; k < l->start[i] + l->count[i]; k++) {
+        const double *vj = v + 3 * (size_t)l->neighbour[k], w = (double)weight[k], dx = vx - vj[0], dy = vy - vj[1], dz = vz - vj[2];
+
+        if (central) {
+          const real  *g = gradient + 3 * (size_t)k;
+          const double s = w * (dx * (double)g[0] + dy * (double)g[1] + dz * (double)g[2]);
+          x += s * (double)g[0];
+          y += s * (double)g[1];
+          z += s * (double)g[2];
+        } else {
+          x += w * dx;
+          y += w * dy;
+          z += w * dz;
+        }
+      }
+      a[3*i]     = x;
+      a[3*i + 1] = y;
+      a[3*i + 2] = z;
+    }
+  }
+}
+
+static void ViscousDiagonal(const SPHLoops *l, int central, double diagonal[])
+{
+  const real *gradient = (const real *)l->gradient, *weight = (const real *)l->viscous;
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < Chunks(l); c++) {
+    for (int i = c * SPH_PAIR_CHUNK; i < ChunkEnd(l, c); i++) {
+      double sum[3] = {0, 0, 0};
+
+      for (int k = l->start[i]; k < l->start[i] + l->count[i]; k++)
+        for (int q = 0; q < 3; q++) sum[q] -= (double)weight[k] * (central ? (double)(gradient[3 * (size_t)k + q] * gradient[3 * (size_t)k + q]) : 1.0);
+      for (int q = 0; q < 3; q++) diagonal[3*i + q] = sum[q];
     }
   }
 }
@@ -463,6 +538,6 @@ static void Repulsion(const SPHLoops *l, const double x[], double strength, doub
 #include "sph_openmp_compact.h"
 
 const SPHLoopTable SPH_TABLE = {SPH_LABEL, (int)sizeof(real), Pairs, Move,     Density,   SetWalls, SetPressure, SetVelocity, Acceleration,
-                                GetVector, Rate,              Diagonal, Viscosity, Filter,
+                                GetVector, Rate,              Diagonal, Artificial, ViscousWeights, Viscous, ViscousDiagonal, Filter,
                                 Compact,   ScaleCompact, Laplacian, Difference, VelocityGradient, Concentration,
                                 Smooth,    Repulsion};

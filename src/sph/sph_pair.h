@@ -52,9 +52,9 @@ BY_HD SPH_REAL SPHPairConcentration(SPH_REAL w_over_w0)
 }
 
 /* viscous acceleration, two forms of the SPH Laplacian:
-     Monaghan  a_i = sum_j 2(d+2) (mu/rho0^2) (v_ij . x_ij)/(r^2 + 0.01 h^2) m grad W_ij, d = 3   [Monaghan 2005 eq. 8.8; method 1]
-               keeps angular momentum; in layers along a wall it shows 0.7 of the viscosity that it shows in disorder
-     Morris    a_i = sum_j 2 (mu/rho0^2) (x_ij . m grad W_ij)/(r^2 + 0.01 h^2) v_ij               [Morris, Fox & Zhu 1997 eq. 22]
+     Monaghan  a_i = sum_j 2(d+2) (mu/(rho_i rho_j)) (v_ij . x_ij)/(r^2 + 0.01 h^2) m grad W_ij, d = 3   [Monaghan 2005 eq. 8.8; method 1]
+               keeps angular momentum; in layers along a wall it shows 0.9 of the viscosity that it shows in disorder
+     Morris    a_i = sum_j 2 (mu/(rho_i rho_j)) (x_ij . m grad W_ij)/(r^2 + 0.01 h^2) v_ij               [Morris, Fox & Zhu 1997 eq. 22]
                the same viscosity for every arrangement within 4 %; keeps linear momentum */
 BY_HD SPH_REAL SPHPairViscosityMonaghan(SPH_REAL mu_over_rho2, SPH_REAL v_dot_x, SPH_REAL r2, SPH_REAL h)
 {

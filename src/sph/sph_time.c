@@ -34,8 +34,9 @@ static PetscReal QuietStep(SPH sph)
   SPHGetTimeStep - largest permitted step for the current state
 
   Equation (method 1.3, after Monaghan 1992):
-  dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.125 h^2/nu, 0.1 h/|U|, max_time_step ), and at most 1.1 times the last one
+  dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.1 h/|U|, max_time_step ), and at most 1.1 times the last one
 
+  and min( 0.125 h^2/nu, 0.8/K_ii ) where viscosity is explicit (sph_viscosity.c).
   |v|max is of particles and walls, |a|max that of the last step, g with the largest acceleration of a moving tank, U the mean velocity that is
   asked for. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
 
@@ -47,7 +48,7 @@ static PetscReal QuietStep(SPH sph)
 PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
 {
   const SPHParams *par = &sph->params;
-  const PetscReal  nu = par->viscosity / par->density, speed = LargestSpeed(sph);
+  const PetscReal  speed = LargestSpeed(sph);
   PetscReal        step = QuietStep(sph);
 
   PetscFunctionBegin;
@@ -58,10 +59,13 @@ PetscErrorCode SPHGetTimeStep(SPH sph, PetscReal *dt)
   if (sph->flow_speed > 0) step = PetscMin(step, 0.1 * sph->h / sph->flow_speed);
   if (speed > 0) step = PetscMin(step, par->cfl * par->spacing / speed);
   if (sph->accel_max > 0) step = PetscMin(step, 0.25 * sqrt(sph->h / sph->accel_max));
-  if (nu > 0) step = PetscMin(step, 0.125 * sph->h * sph->h / nu);
   if (sph->method->LimitStep) PetscCall(sph->method->LimitStep(sph, &step));
   if (par->max_time_step > 0) step = PetscMin(step, par->max_time_step);
   if (sph->dt_last > 0) step = PetscMin(step, 1.1 * sph->dt_last);
+  if (par->viscosity > 0 && par->viscosity_solver != SPH_VISCOSITY_IMPLICIT) {
+    const PetscReal explicit_step = SPHViscousStep_Internal(sph);
+    if (par->viscosity_solver == SPH_VISCOSITY_EXPLICIT || explicit_step > 0.5 * step) step = PetscMin(step, explicit_step);
+  }
   *dt = step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,7 +124,7 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
     sph->rho[i] = sph->rho_pairs[i] + rho0 * (1.0 - sph->open[i]);
     for (int k = 0; k < 3; k++) sph->v_star[3 * i + k] = from[3 * i + k] + dt * a[k];
   }
-  if (sph->params.viscosity > 0) PetscCall(SPHViscousPredict_Internal(sph, dt));
+  if (sph->params.viscosity > 0) ByCall(SPHViscousPredict_Internal(sph, dt));
   if (sph->filter_rate > 0) PetscCall(SPHFilterPredict_Internal(sph, dt));
   if (sph->params.xsph > 0) PetscCall(SPHSmoothPredict_Internal(sph));
   if (sph->params.vorticity_confinement > 0) PetscCall(SPHConfinePredict_Internal(sph, dt));

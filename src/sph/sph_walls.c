@@ -354,8 +354,8 @@ PetscErrorCode SPHPlaneForces_Internal(SPH sph)
           if (plane[k] / 2 != axis) continue;
           if (!of_solver) f[axis] += PlanePressure(sph, i, plane[k], d[k], FluxPart(sph, part) * slope[k]);
           if (nu > 0 && !(sph->slip >> plane[k] & 1)) {
-            const PetscReal friction = sph->mass * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
-            for (int a = 0; a < 3; a++) f[a] += friction * (sph->v_star[3 * i + a] - v[a]);
+            const PetscReal friction = sph->mass * rho0 * sph->volume[i] * SPHWallFriction(nu, part * PetscAbsReal(slope[k]), FrictionDistance(sph, d[k]));
+            for (int a = 0; a < 3; a++) f[a] += friction * (sph->v_viscous[3 * i + a] - v[a]);
           }
         }
       }
@@ -399,11 +399,11 @@ static void SurfaceForces(SPH sph, SPHContacts *q, const SPHSurfaceWork *w)
     PetscReal        sum[3]   = {0, 0, 0};
 
     for (PetscInt b = q->start[t]; b < q->start[t + 1]; b++) {
-      const PetscReal *share  = q->share + 3 * b, *v = q->velocity ? q->velocity + 3 * q->proxy[b] : NULL;
+      const PetscReal *share  = q->share + 3 * b, *v = q->velocity ? q->velocity + 3 * q->proxy[b] : NULL, *slid = nu > 0 && w->velocity ? w->velocity + 3 * q->proxy[b] : NULL;
       const PetscReal  weight = friction * (share[0] * grad[0] + share[1] * grad[1] + share[2] * grad[2]);
 
       for (int k = 0; k < 3; k++) {
-        const PetscReal f = pressure * share[k] + weight * (sph->v_star[3 * i + k] - (v ? v[k] : 0.0));
+        const PetscReal f = pressure * share[k] + (slid ? weight * (sph->v_viscous[3 * i + k] - slid[k]) : 0.0);
         sum[k] += f;
         if (q->force) q->force[3 * q->proxy[b] + k] += f;
         if (v) q->power += f * v[k];

@@ -64,7 +64,7 @@ static PetscErrorCode Predict(SPH sph, PetscReal dt)
   PetscFunctionBegin;
   if (alpha == 0.0) PetscFunctionReturn(PETSC_SUCCESS);
   sph->table->SetVelocity(&sph->loops, sph->v);
-  sph->table->Viscosity(&sph->loops, SPH_PAIRS_APPROACHING, dt * SPHArtificialViscosity(alpha, sph->sound_speed, sph->h, sph->params.density), sph->v_star);
+  sph->table->Artificial(&sph->loops, dt * SPHArtificialViscosity(alpha, sph->sound_speed, sph->h, sph->params.density), sph->v_star);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
