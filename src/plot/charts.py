@@ -61,6 +61,53 @@ def draw_probes(run, path):
     style.save(figure, path)
 
 
+def draw_profile(run, name, path):
+    """velocity or pressure on a line at up to six times, or on a rectangle at up to four"""
+    table = run.profiles[name]
+    times = np.unique(table.time)
+    points = np.stack([table.columns[c][table.time == times[-1]] for c in "xyz"], axis=1)
+    fields = [c for c in table.columns if c not in "xyz"]
+    values = {t: np.stack([table.columns[f][table.time == t] for f in fields], axis=1) for t in times}
+    values = {t: v for t, v in values.items() if len(v) == len(points)}  # a run that was stopped while writing leaves a part of a time
+    axes_used = [k for k in range(3) if np.ptp(points[:, k]) > 0]
+    grid = [len(np.unique(points[:, k])) for k in axes_used]
+    if len(axes_used) == 2 and grid[0] * grid[1] == len(points) and len(points) > max(grid):
+        draw_rectangle(run, name, axes_used, points, values, table.units[fields[0]], path)
+        return
+    far = np.linalg.norm(points - points[0], axis=1)
+    chosen = list(values)[:: max(1, -(-len(values) // 6))] + [list(values)[-1]]
+    shown = [f for f in range(len(fields)) if np.any(np.nan_to_num(np.array(list(values.values()))[:, :, f]))] or [0]
+    figure, axes = panels(len(shown), f"{run.name}: {name}")
+    for ax, f in zip(axes, shown):
+        for n, time in enumerate(dict.fromkeys(chosen)):
+            ax.plot(far, values[time][:, f], marker=".", label=f"{time:.4g} s", color=plt.cm.viridis(0.9 - 0.9 * n / max(1, len(set(chosen)) - 1)))
+        finish(ax, fields[f], table.units[fields[f]])
+        ax.set_xlabel("from the line's beginning [m]")
+    style.save(figure, path)
+
+
+def draw_rectangle(run, name, axes_used, points, values, unit, path):
+    """speed with arrows, or pressure, at up to four times"""
+    across, up = (points[:, k] for k in axes_used)
+    shape = (len(np.unique(up)), len(np.unique(across)))
+    times = [list(values)[k] for k in sorted({round(q * (len(values) - 1)) for q in (0.1, 0.4, 0.7, 1.0)})]
+    figure, axes = panels(len(times), f"{run.name}: {name}", height=4.2)
+    sizes = {t: np.linalg.norm(v, axis=1) if v.shape[1] == 3 else v[:, 0] for t, v in values.items()}
+    finite = np.concatenate([sizes[t][np.isfinite(sizes[t])] for t in times])
+    low, high = (0.0 if unit == "m/s" else finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
+    for ax, time in zip(axes, times):
+        picture = ax.pcolormesh(across.reshape(shape), up.reshape(shape), sizes[time].reshape(shape), shading="nearest", cmap="viridis", vmin=low, vmax=max(high, low + 1e-12))
+        if values[time].shape[1] == 3:
+            ax.quiver(across, up, *(values[time][:, k] for k in axes_used), color="white", width=0.003)
+        figure.colorbar(picture, ax=ax, label=unit)
+        ax.set_aspect("equal")
+        ax.set_title(f"{time:.4g} s")
+        ax.set_xlabel("xyz"[axes_used[0]] + " [m]")
+        ax.set_ylabel("xyz"[axes_used[1]] + " [m]")
+        ax.grid(visible=False)
+    style.save(figure, path)
+
+
 def draw_energies(run, path):
     """what exists of: the water's, the bodies', the work at the interface, all together"""
     table = run.ledger

@@ -63,7 +63,8 @@ def facts(run):
 def figure(path):
     with open(path, "rb") as file:
         data = base64.b64encode(file.read()).decode()
-    title = TITLES[os.path.basename(path)]
+    name = os.path.basename(path)
+    title = TITLES.get(name) or "Probe " + html.escape(name[len("profile_"):-len(".png")])
     return f'<h2>{title}</h2>\n<figure><img alt="{title}" src="data:image/png;base64,{data}"></figure>\n'
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """plot.py - pictures (PNG) and one self-contained HTML page of runs: plot.py RUN... [-width PIXELS]
 
-Writes RUN/plots/final.png, moments.png, probes.png, energies.png, solver.png (those for which the run has data) and index.html; of several
+Writes RUN/plots/final.png, moments.png, probes.png, profile_<probe>.png, energies.png, solver.png (those for which the run has data) and index.html; of several
 runs also compare.png, into each; of `byssus verify` verification.png. Needs no display. Status 0 done, 1 a picture could not be written, 2 a directory is not a run or is damaged.
 """
 
@@ -44,6 +44,8 @@ def draw_run(run, width):
         add("moments.png", picture.draw_moments, run, view, width)
     if run.probes and len(run.probes.time) and run.probes.columns:
         add("probes.png", charts.draw_probes, run)
+    for name in run.profiles:
+        add(f"profile_{name}.png", charts.draw_profile, run, name)
     if run.ledger and len(run.ledger.time):
         add("energies.png", charts.draw_energies, run)
         add("solver.png", charts.draw_solver, run)

@@ -156,11 +156,21 @@ class Run:
         self.scene_text, self.scene = self._read_scene() if "scene.yaml" in names else ("", {})
         self.ledger = Table(os.path.join(directory, "ledger.csv")) if "ledger.csv" in names else None
         self.probes = Table(os.path.join(directory, "probes.csv")) if "probes.csv" in names else None
+        self.profiles = self._read_profiles([n for n in names if n.endswith(".csv") and n not in ("ledger.csv", "probes.csv")])
         series = [Series(os.path.join(directory, n)) for n in results]
         series = [s for s in series if s.n_steps]
         self.fluid = next((s for s in series if s.name == "fluid" and s.kind == "points"), None)
         self.proxies = {s.name[: -len("_proxies")]: s for s in series if s.name.endswith("_proxies")}
         self.bodies = [s for s in series if s.kind != "points"]
+
+    def _read_profiles(self, names):
+        """probes on lines and rectangles: tables with a row for every time and point"""
+        tables = {}
+        for name in names:
+            with open(os.path.join(self.directory, name), encoding="utf-8", errors="replace") as file:
+                if file.readline().startswith("time [s],x [m],y [m],z [m],"):
+                    tables[name[:-4]] = Table(os.path.join(self.directory, name))
+        return {name: table for name, table in tables.items() if len(table.time)}
 
     def _read_summary(self):
         path = os.path.join(self.directory, "summary.json")
