@@ -226,14 +226,14 @@ static PetscErrorCode SolveImplicit(SPH sph, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* v* += sign dt (pressure acceleration of the last step's pressure at the positions of now) */
+/* v* += dt (acceleration by the last step's pressure at the positions of now); solvers with an acceleration of their own go without */
 static PetscErrorCode AddLastPressure(SPH sph, PetscReal dt)
 {
   const int n = (int)sph->n;
 
   PetscFunctionBegin;
-  if (sph->method->Accelerate) PetscCall(sph->method->Accelerate(sph, PetscAbsReal(dt)));
-  else SPHPressureAcceleration_Internal(sph);
+  if (sph->method->Accelerate) PetscFunctionReturn(PETSC_SUCCESS); // of a solve that is still to come
+  SPHPressureAcceleration_Internal(sph);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < 3 * n; i++) sph->v_star[i] += dt * sph->accel[i];
   PetscFunctionReturn(PETSC_SUCCESS);
