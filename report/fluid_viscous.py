@@ -73,19 +73,20 @@ def binned(state, dx, peak):
 def picture(runs, exact, time, name, title, height=HEIGHT, peak=PEAK):
     """profiles of the finest run at the moments, errors over spacing, its particles"""
     fine, z = runs[-1], np.linspace(0, 1, 120)
-    drawn, axes = draw.figure(3, width=10.5, height=3.8)
-    lines = [(f"t nu/H^2 = {s.time / time:.2g}", *binned(s, fine["dx"], peak)[::-1]) for s in fine["states"]]
+    drawn, axes = draw.figure(3, width=10.5, height=3.9, gridspec_kw={"width_ratios": [2, 2, 0.7]})
+    lines = [(f"{s.time / time:.2g}", *binned(s, fine["dx"], peak)[::-1]) for s in fine["states"]]
     for k, (label, u, at) in enumerate(lines):
         axes[0].plot(u, at / height, marker="o", markersize=3, linestyle="none", color=draw.style.COLOURS[k % 8], label=label)
         axes[0].plot(exact(z, fine["states"][k].time / time), z, color=draw.style.TEXT, linewidth=0.9)
     axes[0].set_xlabel("u / U")
     axes[0].set_ylabel("z / H")
-    axes[0].set_title(f"{title}: layers (dots), exact (lines)")
-    axes[0].legend(fontsize=8)
+    axes[0].set_title("layers (dots), exact (lines)")
+    axes[0].legend(fontsize=8, title="t nu/H²")
     draw.convergence(axes[1], [r["dx"] for r in runs], {"steady": [r["steady"] for r in runs], "start-up": [r["start_up"] for r in runs]}, title="rms error / U")
     s = fine["states"][-1]
     draw.particles(axes[2], s.x, s.v[:, 0], fine["dx"], label="u [m/s]", limits=(0, peak), box=((0, 0, 0), (5 * fine["dx"], 5 * fine["dx"], height)))
-    axes[2].set_title("particles, finest")
+    axes[2].set_title("finest")
+    axes[2].set_xticks([])
     return draw.save(drawn, name, f"{title}: profiles, errors over spacing, particles")
 
 
@@ -150,8 +151,7 @@ def couette():
 
 
 IMPLICIT = """A film of 16 layers, 0.1 m, on the same incline, gravity on at t = 0: the physical time that is followed is the same, 0.1 s, while the viscosity grows, so that explicit steps shrink as
-0.8/K_ii, about 0.1 h^2/nu, and implicit ones stay at what gravity allows. Error: rms of u at the end from the exact start-up, over its largest value there. Explicit runs that would take more
-than 10,000 steps are left out (-). The implicit step is first order in time, and momentum is kept to round-off whatever its tolerance (`unit.sph.viscosity`)."""
+0.8/K_ii, about 0.045 h^2/nu, and implicit ones stay at what gravity allows. Error: rms of u at the end from the exact start-up, over its largest value there. The implicit step is first order in time, and momentum is kept to round-off whatever its tolerance (`unit.sph.viscosity`)."""
 
 
 def slump(nu, solver):
@@ -171,14 +171,10 @@ def slump(nu, solver):
 def implicit():
     rows, chosen = [], []
     for nu in (1e-3, 1e-2, 1e-1, 1.0):
-        dx = HEIGHT / 16
-        known = 0.1 / (0.1 * (2 * dx) ** 2 / nu)  # explicit steps to be expected
-        with_cg = slump(nu, "implicit")
-        plain = slump(nu, "explicit") if known < 1e4 else None
-        rows.append((f"{DENSITY * nu:g}", plain["steps"] if plain else "-", f"{plain['cpu']:.1f}" if plain else "-", percent(plain["error"]) if plain else "-", with_cg["steps"], f"{with_cg['iterations']:.0f}", f"{with_cg['cpu']:.1f}", percent(with_cg["error"])))
+        plain, with_cg = slump(nu, "explicit"), slump(nu, "implicit")
+        rows.append((f"{DENSITY * nu:g}", plain["steps"], f"{plain['cpu']:.1f}", percent(plain["error"]), with_cg["steps"], f"{with_cg['iterations']:.0f}", f"{with_cg['cpu']:.1f}", percent(with_cg["error"])))
         chosen.append((plain, with_cg))
-    pairs = [(a, b) for a, b in chosen if a]
-    gain = pairs[-1][0]["cpu"] / pairs[-1][1]["cpu"]
+    gain = chosen[-1][0]["cpu"] / chosen[-1][1]["cpu"]
     claim("implicit viscosity, 1000 Pa s, film in 0.1 s", percent(chosen[-1][1]["error"]), "", "5 %", chosen[-1][1]["error"] < 0.05)
     return (IMPLICIT + "\n\n" + table(["viscosity, Pa s", "explicit: steps", "cpu, s", "error", "implicit: steps", "CG a step", "cpu, s", "error"], rows)
-            + f"\nAt the largest viscosity that both ran implicit took {gain:.1f} times less time.\n")
+            + f"\nAt 1000 Pa s implicit took {gain:.1f} times less time.\n")
