@@ -23,11 +23,15 @@ import fluid_marin
 import fluid_sloshing
 import fluid_speed
 import fluid_still
+import fluid_viscous
 import fluid_waves
 from sections import main
 
 SECTIONS = (
     ("still", "Still water in a tank", fluid_still.still),
+    ("poiseuille", "Laminar flow: Poiseuille, a film down an incline", fluid_viscous.poiseuille),
+    ("couette", "Laminar flow: Couette", fluid_viscous.couette),
+    ("implicit", "Implicit viscosity", fluid_viscous.implicit),
     ("settle", "Start from rest", fluid_flows.settle),
     ("open_channel", "Channels with inflow and outflow", fluid_flows.open_channel),
     ("source", "A tap that fills a tank", fluid_flows.source),
