@@ -49,6 +49,20 @@ static PetscReal TypicalRate(SPH sph)
   return sqrt(sum / n);
 }
 
+/* no shift ends nearer to a plane than SPH_STOP_GAP; a particle that is nearer, drawn into a wall by suction, is shifted out */
+static void KeepIn(SPH sph, const PetscReal x[3], PetscReal dr[3])
+{
+  const PetscReal gap = SPH_STOP_GAP * sph->params.spacing, most = SPH_SHIFT_MOST * sph->params.spacing;
+
+  for (int k = 0; k < 6; k++) {
+    PetscReal       sign;
+    const PetscReal d = SPHPlaneDistance(sph, k, x, &sign);
+
+    if (!(sph->walls >> k & 1) || d + sign * dr[k / 2] >= gap) continue;
+    dr[k / 2] = sign * PetscMin(most, gap - d);
+  }
+}
+
 PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
 {
   SPHCompactWork *w    = &sph->compact;
@@ -75,6 +89,7 @@ PetscErrorCode SPHShift_Internal(SPH sph, PetscReal dt)
     length = Norm3(dr);
     if (length > most)
       for (int k = 0; k < 3; k++) dr[k] *= most / length;
+    KeepIn(sph, sph->x + 3 * i, dr);
     Mul3(L, dr, v);
     const PetscReal stray = Stray(Norm3(sph->accel + 3 * i), sph->h * (sqrt(rate2) + 0.5 * typical));
     for (int k = 0; k < 3; k++) {
