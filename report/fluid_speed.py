@@ -33,7 +33,7 @@ def build():
     execute(["cmake", "--build", BUILD, "--target", "bench.sph"])
 
 
-def bench(name, arguments, timeout=600):
+def bench(name, arguments, timeout=1200):
     """bench.sph on one thread, with the processor's time; what it wrote as a dictionary, `stopped` with the reason if it did not come to its end"""
     path = WORK / "speed" / (name + ".json")
     mark = path.with_suffix(".arguments")
