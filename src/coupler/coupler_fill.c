@@ -363,13 +363,17 @@ static PetscErrorCode PackContacts(void *ctx, SPH sph)
 /* particles of all fill blocks, carved and packed; SetUp of the fluid */
 PetscErrorCode CouplerBuildFluid(Coupler c, const DomainParams *domain)
 {
-  SPHParams *params;
-  Cloud      cloud = {0};
-  PetscBool *keep;
-  PetscReal  volume = 0.0;
+  SPHParams  *params;
+  Cloud       cloud = {0};
+  PetscBool  *keep;
+  PetscReal   volume = 0.0;
+  PetscBool   by_volume; // isph: the solver never asks for density, so that the number of particles must fit the volume
+  const char *solver;
 
   PetscFunctionBegin;
   PetscCall(SPHGetParams(c->sph, &params));
+  PetscCall(SPHGetSolver(c->sph, &solver, NULL));
+  PetscCall(PetscStrcmp(solver, "isph", &by_volume));
   for (PetscInt k = 0; k < params->fill.n; k++) ByCall(AddBlock(&cloud, params->fill.name[k], k, params->spacing, c->sph, &volume));
   if (volume > 0 && params->fill.n == 1) PetscCall(SPHSetParticleVolume(c->sph, volume));
   PetscCall(RemoveDoubles(&cloud, params->spacing));
@@ -383,7 +387,7 @@ PetscErrorCode CouplerBuildFluid(Coupler c, const DomainParams *domain)
       PetscCall(TLEDGetSurface(s->tled, PETSC_FALSE, &n, &triangles));
       PetscCall(TLEDGetPositions(s->tled, &x, &v));
     }
-    PetscCall(Carve(&cloud, x, n, triangles, START_GAP * params->spacing));
+    PetscCall(Carve(&cloud, x, n, triangles, by_volume ? 0.0 : START_GAP * params->spacing));
   }
   PetscCall(PetscMalloc1(cloud.n, &keep));
   for (PetscInt i = 0; i < cloud.n; i++) {

@@ -511,6 +511,7 @@ PetscErrorCode ProxyFindContacts(Proxy p, PetscInt n, const PetscReal x[], SPHCo
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the contacts of %s", p->name);
   PetscCall(Collect(p, n_chunks, contacts));
   contacts->n_proxies = p->sampling.n;
+  contacts->area      = p->area;
   contacts->velocity  = p->node_velocity ? p->velocity : NULL;
   contacts->force     = p->force;
   PetscFunctionReturn(PETSC_SUCCESS);

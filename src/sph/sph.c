@@ -265,7 +265,7 @@ PetscErrorCode SPHSetUp(SPH sph)
     const PetscReal speed = PetscMax(sqrt(g * sph->h), sph->flow_speed);
     sph->relax_time       = speed > 0 ? 0.5 * sph->h / speed : -1.0;
   }
-  sph->wall_flux   = 1.0;
+  sph->wall_flux   = sph->surface_part = 1.0;
   sph->shifting    = PetscMax(0.0, par->shifting);
   sph->prototype   = grad2 * sph->mass * sph->mass;
   sph->filter_norm = SPHFilterNorm(sph->prototype);
@@ -367,7 +367,7 @@ PetscErrorCode SPHGetSolver(SPH sph, const char *name[], PetscBool *responds)
 
   PetscFunctionBegin;
   if (name) *name = ops->name;
-  if (responds) *responds = ops->responds;
+  if (responds) *responds = (PetscBool)(ops->responds && (ops != &SPHSolverISPH || sph->params.free_surface)); // a closed flow leaves the mean pressure on a body open
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -114,6 +114,7 @@ typedef struct {
   const PetscInt  *proxy;         /* proxy index of each pair                                              */
   const PetscReal *share;         /* n_pairs x 3 [1/m]                                                     */
   PetscInt         n_proxies;
+  const PetscReal *area;          /* n_proxies [m^2]; NULL = not known                                     */
   const PetscReal *velocity;      /* n_proxies x 3 [m/s], mean over the coming step; NULL = at rest        */
   PetscBool        slip;          /* a viscous fluid slips along it                                        */
   PetscReal       *force;         /* n_proxies x 3 [N], out: force of the fluid on each proxy; may be NULL */

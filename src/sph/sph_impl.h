@@ -115,6 +115,7 @@ struct _p_SPH {
   PetscReal     wall_work, frame_work; /* [J] on the fluid since the start               */
 
   /* derived at SetUp */
+  PetscReal surface_part;            /* factor on phi of surfaces: 1, less while isph packs                   */
   PetscReal wall_flux;               /* factor on rho0 grad phi in G: 1, or 2/s where images share the flux (sph_isph.c) */
   PetscReal shifting;                /* strength in use [1]                              */
   PetscReal h, mass, wall_factor;    /* [m], [kg], [1]                                   */
@@ -294,6 +295,7 @@ PETSC_INTERN PetscErrorCode SPHWantsKSP_Internal(SPH sph, PetscBool *wanted);
 PETSC_INTERN PetscErrorCode SPHSolveKSP_Internal(SPH sph, const SPHOperator *op);
 PETSC_INTERN PetscErrorCode SPHDestroyKSP_Internal(SPH sph);
 /* sph_isph.c */
+PETSC_INTERN PetscReal      SPHLatticeWallFactor_Internal(SPH sph);
 PETSC_INTERN PetscErrorCode SPHCompact_Internal(SPH sph, PetscReal diagonal[]);
 PETSC_INTERN PetscErrorCode SPHCompactDestroy_Internal(SPH sph);
 PETSC_INTERN void           SPHVelocityGradient_Internal(SPH sph, const PetscReal v[], PetscReal deviation[]);

@@ -311,6 +311,20 @@ static void RemoveMean(SPH sph)
   for (int i = 0; i < n; i++) sph->p[i] -= sum / n;
 }
 
+/* the factor on a plane's volume with which a lattice that begins half a spacing from it has rest density: what the layers beyond it would give, over
+   the volume beyond (0.80 for the cubic spline, h = 2 dx) */
+PetscReal SPHLatticeWallFactor_Internal(SPH sph)
+{
+  const PetscReal dx = sph->params.spacing;
+  const int       m  = (int)ceil(sph->h / dx);
+  PetscReal       beyond = 0.0;
+
+  for (int k = 1; k <= m; k++)
+    for (int j = -m; j <= m; j++)
+      for (int i = -m; i <= m; i++) beyond += dx * dx * dx * SPHKernelW(sph->params.kernel, dx * sqrt((PetscReal)(i * i + j * j + k * k)), sph->h);
+  return beyond / SPHHalfSpace(sph->params.kernel, 0.5 * dx, sph->h);
+}
+
 static PetscErrorCode SetUp(SPH sph)
 {
   PetscFunctionBegin;

@@ -146,15 +146,22 @@ static void Displace(SPH sph)
 
   Each sweep solves the pressure problem of a unit step at rest, b = rho - rho0, and moves every particle by what that pressure gives, at
   most a tenth of the spacing. Pressure is never negative, so that particles part and never gather: no volume is lost.
+  Walls count by their calibrated factor, which lets the first layer lie where density keeps it; with isph, which never asks for density, by
+  what a lattice beyond them would give, so that the layers at a wall stay as full as inside and forces on walls are sums over all of the fluid there.
 @*/
 PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCode (*contacts)(void *, SPH), void *ctx)
 {
-  const PetscReal relax = sph->relax_time, tolerance = sph->params.tolerance;
+  const PetscReal relax = sph->relax_time, tolerance = sph->params.tolerance, flux = sph->wall_flux, factor = sph->wall_factor;
   const PetscInt  n = sph->n;
 
   PetscFunctionBegin;
   PetscCheck(sph->setup, PetscObjectComm((PetscObject)sph), PETSC_ERR_ORDER, "SPHSetUp() comes first");
   sph->packing = PETSC_TRUE;
+  if (flux != 1.0) { // walls with images
+    sph->wall_flux    = 1.0;
+    sph->wall_factor  = SPHLatticeWallFactor_Internal(sph);
+    sph->surface_part = sph->wall_factor / factor;
+  }
   for (PetscInt sweep = 0; sweep <= max_sweeps; sweep++) {
     ByCall(SPHUpdateNeighbors(sph));
     if (contacts) ByCall(contacts(ctx, sph));
@@ -170,7 +177,10 @@ PetscErrorCode SPHPack(SPH sph, PetscReal tol, PetscInt max_sweeps, PetscErrorCo
     sph->params.tolerance = tolerance;
     Displace(sph);
   }
-  sph->packing = PETSC_FALSE;
+  sph->packing      = PETSC_FALSE;
+  sph->wall_flux    = flux;
+  sph->wall_factor  = factor;
+  sph->surface_part = 1.0;
   PetscCall(PetscArrayzero(sph->p, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

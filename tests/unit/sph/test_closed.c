@@ -174,6 +174,21 @@ static void FullBoxIsHydrostatic(void **state)
   assert_petsc(SPHDestroy(&sph));
 }
 
+/* a lattice that fills the box is packed as it is, though phi and its calibrated factor would press the first layer out of place */
+static void PackingKeepsALattice(void **state)
+{
+  SPH       sph = Box(8, 0.0, 63, 0);
+  PetscReal x[1536];
+  PetscReal flux = sph->wall_flux, factor = sph->wall_factor;
+
+  (void)state;
+  memcpy(x, sph->x, sizeof(x));
+  assert_petsc(SPHPack(sph, 1e-3, 100, NULL, NULL));
+  for (int i = 0; i < 1536; i++) assert_close(sph->x[i], x[i], 1e-3, 0.01);
+  assert_true(sph->wall_flux == flux && sph->wall_factor == factor);
+  assert_petsc(SPHDestroy(&sph));
+}
+
 /* out += factor (g . p) g: what a wall without elasticity adds */
 static PetscErrorCode Response(void *ctx, PetscInt n, const PetscReal p[], PetscReal Ap[])
 {
@@ -234,5 +249,5 @@ static void ThreadsAndRestartsGiveTheSameBits(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(CompactOperatorIsSymmetricAndKeepsConstants), cmocka_unit_test(GradientsOfLinearFieldsAreExact), cmocka_unit_test(ShiftingKeepsALattice),
-           cmocka_unit_test(VorticesDecayAsTheyShould), cmocka_unit_test(FullBoxIsHydrostatic), cmocka_unit_test(ResponseEntersTheProjection),
+           cmocka_unit_test(VorticesDecayAsTheyShould), cmocka_unit_test(FullBoxIsHydrostatic), cmocka_unit_test(PackingKeepsALattice), cmocka_unit_test(ResponseEntersTheProjection),
            cmocka_unit_test(ThreadsAndRestartsGiveTheSameBits))
