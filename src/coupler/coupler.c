@@ -143,7 +143,7 @@ PetscErrorCode CouplerSetUp(Coupler c)
 {
   SPHParams  *params;
   const char *solver;
-  PetscBool   responds;
+  PetscBool   responds, isph;
 
   PetscFunctionBegin;
   if (c->setup) PetscFunctionReturn(PETSC_SUCCESS);
@@ -154,6 +154,11 @@ PetscErrorCode CouplerSetUp(Coupler c)
   c->rest_density = params->density;
   c->compliant    = (PetscBool)(c->params.scheme == COUPLER_SCHEME_MASS && c->n_bodies > 0);
   PetscCall(SPHGetSolver(c->sph, &solver, &responds));
+  PetscCall(PetscStrcmp(solver, "isph", &isph));
+  for (PetscInt k = 0; k < c->n_bodies && isph && !params->free_surface; k++) {
+    if (!c->surface[k].proxy) continue;
+    PetscFunctionReturn(InputError("sph.solver", "isph knows the pressure of a closed flow but for a constant, which elastic body %s would be squeezed by: take iisph, or an obstacle in its place", c->surface[k].name));
+  }
   if (c->compliant && !responds) PetscFunctionReturn(InputError("coupler.scheme", "mass needs a pressure solver that takes the bodies' response: sph.solver %s does not, iisph does", solver));
   for (PetscInt k = 0; k < c->n_bodies && c->params.scheme == COUPLER_SCHEME_AUTO; k++) {
     PetscReal r = 0.0;

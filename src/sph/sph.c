@@ -367,7 +367,7 @@ PetscErrorCode SPHGetSolver(SPH sph, const char *name[], PetscBool *responds)
 
   PetscFunctionBegin;
   if (name) *name = ops->name;
-  if (responds) *responds = (PetscBool)(ops->responds && (ops != &SPHSolverISPH || sph->params.free_surface)); // a closed flow leaves the mean pressure on a body open
+  if (responds) *responds = ops->responds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,4 +21,7 @@ report.below("lift / rho g V - 1", abs(lift / (9810 * volume(x, triangles)) - 1)
 report.below("floor and lid / rho g (volume of the box) - 1", abs((floor + lid) / (-9810 * 0.4**3) - 1), 0.01)
 report.below("all of them / weight of the water - 1", abs((lift + floor + lid) / (-9810 * (0.4**3 - volume(x, triangles))) - 1), 0.02)
 report.below("particles inside", run.summary["coupling"]["penetrations"], 0.5)
+# an elastic body in a closed flow of isph is refused
+errors = Case("floating_ball.yaml", status=2, sph_free_surface="false").errors
+report.true("refused: elastic body, closed, isph", "isph knows the pressure of a closed flow but for a constant" in errors)
 report.end()
