@@ -34,7 +34,7 @@ static PetscErrorCode Reserve(SPH sph)
   if (n > w->allocated) {
     w->allocated = n + n / 8;
     PetscCall(PetscFree7(w->distance, w->moments, w->trace, w->velocity_gradient, w->pressure_gradient, w->fullness, w->shift));
-  PetscCall(PetscFree(w->stretch));
+    PetscCall(PetscFree(w->stretch));
     PetscCall(PetscMalloc1(6 * w->allocated, &w->stretch));
     PetscCall(PetscMalloc7(SPH_IMAGES * w->allocated, &w->distance, 6 * w->allocated, &w->moments, w->allocated, &w->trace, 9 * w->allocated, &w->velocity_gradient, 3 * w->allocated,
                            &w->pressure_gradient, w->allocated, &w->fullness, 3 * w->allocated, &w->shift));

@@ -3,17 +3,17 @@
      dr_i = -s dt |grad v|_i h^2 grad C_i,  grad C_i = sum_j V weight grad W_ij + grad phi_i,  v_i += (grad v)_i dr_i
    [Lind, Xu, Stansby & Rogers 2012 eq. 23-28; Skillen, Lind, Stansby & Rogers 2013 eq. 25]. The rate of deformation |grad v| stands in the place of
    Skillen's |v|/h: what disorders particles is deformation, and nothing that moves like a rigid body or rests is shifted. At a free surface,
-   where the neighbourhood is not full, only the part of dr along the surface is kept. */
+   where the neighbourhood is not full, nothing is shifted. */
 #include <math.h>
 
 #include "mat3.h"
 #include "sph_impl.h"
 
 #define SPH_SHIFT_STABLE 0.05 /* of h^2: a larger step of this explicit diffusion overshoots            */
-#define SPH_SHIFT_MOST  0.2 /* longest shift in a step [dx]                                             */
+#define SPH_SHIFT_MOST   0.2  /* longest shift in a step [dx]                                           */
 #define SPH_SHIFT_FLAT   1.0  /* fullness below which particles are led aside                             */
 #define SPH_SHIFT_NUDGE  3.0  /* [dx] per unit of strain of a neighbourhood without thickness             */
-#define SPH_SHIFT_FULL  0.92 /* neighbourhoods less full than this are at a free surface                  */
+#define SPH_SHIFT_FULL   0.92 /* neighbourhoods less full than this are at a free surface                  */
 
 /* a lattice that is strained stays even, grad C = 0, until lines of particles break up at once: where a neighbourhood has been flattened,
    each particle is led aside along a direction of its own, which breaks the symmetry while it is harmless */
@@ -25,9 +25,8 @@ static void Nudge(SPH sph, PetscInt i, PetscReal strain, PetscReal dr[3])
 }
 
 /* A particle whose velocity is not that of its surroundings is not seen by the divergence, and a shift along its own gradient would feed it:
-   it is told by its deviation from the others, which a smooth flow makes small beside h times the local and half the rms |grad v| (0.05 in vortices of 16 dx),
-   takes no shift's velocity,
-   and is led back. 0 no stray, 1 a stray. */
+   it is told by its deviation from the others, which a smooth flow makes small beside h times the local and half the rms |grad v| (0.05 in
+   vortices of 16 dx), takes no shift's velocity, and is led back. 0 no stray, 1 a stray. */
 static PetscReal Stray(PetscReal deviation, PetscReal expected)
 {
   return expected > 0 ? PetscMin(1.0, PetscMax(0.0, 4.0 * deviation / expected - 1.0)) : 0.0;
