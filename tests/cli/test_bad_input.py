@@ -61,7 +61,7 @@ CASES = [
     ("line of heights", GOOD, "bodies:", "probes: [g]\ng: {to: [1, 1, 1], samples: 3, quantity: height}\nbodies:", 2, [":9: g.to", "belongs to `velocity` or `pressure`"]),
     ("support of an unknown group", GOOD, "fixed: [root]", "constraints: [hand], hand: {groups: [skn]}", 2, [":9: block.hand.groups", "skn", "did you mean skin"]),
     ("support of a direction that is none", GOOD, "fixed: [root]", "constraints: [hand], hand: {groups: [root], components: [w]}", 2, [":9: block.hand.components", "x, y, z"]),
-    ("motion without a course", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], translation: [0, 0, 1]}", 2, [":9: block.hand.course", "linear, ramp"]),
+    ("motion without a course", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], translation: [0, 0, 1]}", 2, [":9: block.hand.course", "linear, quadratic, ramp"]),
     ("motion that moves nothing", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], course: ramp, duration: 1}", 2, [":9: block.hand.translation"]),
     ("rotation without an axis", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], angle: 90, course: ramp, duration: 1}", 2, [":9: block.hand.axis"]),
     ("ramp without a duration", GOOD, "fixed: [root]", "constraints: [hand], hand: {kind: motion, groups: [root], angle: 90, axis: [0, 0, 1], course: ramp}", 2, [":9: block.hand.duration"]),
