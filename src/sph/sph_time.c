@@ -245,7 +245,10 @@ PetscErrorCode SPHDrift(SPH sph, PetscReal dt)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Advance, sph, 0, 0, 0));
-  if (sph->shifting > 0) PetscCall(SPHShift_Internal(sph, dt));
+  if (sph->shifting > 0) {
+    PetscCall(SPHShift_Internal(sph, dt));
+    SPHStopAtPlanes_Internal(sph, dt); // shifting changes velocities
+  }
   ByCall(SPHTick_Internal(sph, dt));
   if (sph->method->Drift) PetscCall(sph->method->Drift(sph, dt, &path));
   else Drift(sph, dt, &path);

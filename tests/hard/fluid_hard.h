@@ -159,6 +159,7 @@ static inline void HardTell(const char name[], const char solver[], const HardRu
   if (refused) snprintf(outcome, sizeof outcome, "refused");
   else if (r->ierr) snprintf(outcome, sizeof outcome, "stopped: %s", stopped ? r->reason : "no reason given");
   else snprintf(outcome, sizeof outcome, "%d steps, %d outside%s", (int)r->steps, (int)r->outside, r->seconds < LONGEST ? "" : ", hung");
+  for (char *at = outcome; (at = strchr(at, '\n')); at++) *at = ' '; // a row is a line
   printf("hard fluid: %s | %s | %s | %s | %.2f | %s\n", name, solver, outcome, r->ierr ? "" : figures, (double)r->seconds, within ? "yes" : "no");
   fflush(stdout);
   hard_failures += !within;
