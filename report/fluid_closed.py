@@ -67,7 +67,7 @@ CAVITY = """A cavity 1 x 1 m, four spacings deep and periodic in depth, full of 
 Ghia & Shin 1982 (`report/data/ghia1982_*.csv`): at their points a linear fit to the particles within 2 dx, mean over the last ten outputs. Error: rms over all
 points inside, over the lid's velocity; u: of the horizontal velocity on the vertical line, v: of the other."""
 
-CAVITY_RUNS = {100: ((20, 40), 12.0), 1000: ((32, 64), 40.0)}  # cells a side, time
+CAVITY_RUNS = {100: ((20, 40), 12.0), 1000: ((32, 48), 40.0)}  # cells a side, time
 
 
 def fit(state, points, component, dx):
