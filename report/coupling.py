@@ -1,0 +1,29 @@
+#!/usr/bin/python3
+"""coupling.py - ./dev report coupling [-keep] [-only SECTION ...]: run everything that docs/verification/coupling.md shows, and write it.
+
+Works as fluid.py: a section is a function without arguments that returns markdown; it is kept in build/report/coupling/SECTION.md with its scenes and runs
+beside it. Status 0 when every row is within what is allowed, 3 when one is not, 1 when something could not be run.
+"""
+
+import sys
+
+sys.dont_write_bytecode = True
+
+from sections import main
+
+SECTIONS = (
+)
+
+HEAD = """# Water and bodies against what is known
+
+Made by `./dev report coupling` ({seconds:.0f} s on {machine}, often shared with other work: cpu seconds count); sections by `./dev report coupling -only NAME`, NAME given with each.
+Scenes and results are in `build/report/coupling`, reference numbers with their sources in `report/data`. Unless a section says otherwise: defaults, support 2 dx, single precision,
+no viscosity. The fluid by itself: [fluid.md](fluid.md), the solid: [solid.md](solid.md).
+
+## What is asked, and what was reached
+Rows that miss a bar say **no**; there are {failures}.
+
+{summary}"""
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:], SECTIONS, HEAD))
