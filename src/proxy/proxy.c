@@ -185,9 +185,10 @@ static PetscBool OnSharpEdge(const Proxy p, PetscInt i)
   return PETSC_FALSE;
 }
 
-/* Supports. Half-space: radius h/kappa-bar in the tangent plane, larger where the triangle has grown. Ellipsoid (method 4.3): on sharp edges
-   a = 2 d_E along the edge, b = c = h; at sharp corners a sphere; elsewhere a = b = h/kappa-bar whatever it was sampled on (the paper's
-   spheres at all vertices would leave holes where thinning has taken the proxies between them); stretched with edge and area. */
+/* Supports. Half-space: radius h/kappa-bar in the tangent plane, larger where the triangle has grown. Sphere: h. Ellipsoid (method 4.3): on
+   edges a = 2 d_E along the edge, b = c = h; at vertices a sphere; on triangles a = b = h/kappa-bar; stretched with edge and area. Where
+   proxies are thinned only sharp edges and corners count as such, the rest as triangles, whatever it was sampled on: the paper's spheres at
+   all vertices would leave holes where thinning has taken the proxies between them. */
 static void PlaceSupport(Proxy p, PetscInt i, ProxyPoint *b)
 {
   const ProxySurface  *s = &p->surface;
@@ -201,8 +202,8 @@ static void PlaceSupport(Proxy p, PetscInt i, ProxyPoint *b)
     for (int k = 0; k < 8; k++) b->extent[k] = q->extent[8*i + k]*PetscMax(1.0, stretch);
     return;
   }
-  b->radius[0] = b->radius[1] = R*stretch;
-  if (OnSharpEdge(p, i)) {
+  b->radius[0] = b->radius[1] = p->params.kernel == PROXY_KERNEL_SPHERE ? h : R*stretch;
+  if (p->params.kernel == PROXY_KERNEL_ELLIPSOID && (p->params.thin ? OnSharpEdge(p, i) : q->kind[i] != PROXY_FACE)) {
     b->radius[0] = q->kind[i] == PROXY_EDGE ? R*length/q->edge0[s->triangle_edges[3*t + q->side[i]]] : h;
     b->radius[1] = h;
   }
@@ -219,7 +220,7 @@ static PetscErrorCode PlaceProxies(Proxy p)
   for (PetscInt i = 0; i < q->n; i++) PlacePoint(p, i, &p->points[i]);
 #pragma omp parallel for schedule(static)
   for (PetscInt i = 0; i < q->n; i++) PlaceSupport(p, i, &p->points[i]);
-  if (p->params.kernel == PROXY_KERNEL_ELLIPSOID) PetscCall(ProxyEllipsoidVolumes(p->fluid.kernel, p->fluid.h, p->factor, q->n, p->points));
+  if (p->params.kernel != PROXY_KERNEL_HALF_SPACE) PetscCall(ProxyEllipsoidVolumes(p->fluid.kernel, p->fluid.h, p->factor, q->n, p->points));
 
   // nodal shares of the area
   PetscCall(PetscArrayzero(p->node_weight, p->surface.n_nodes));
@@ -249,7 +250,7 @@ static PetscErrorCode Sample(Proxy p)
 {
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(EventSample, 0, 0, 0, 0));
-  PetscCall(ProxySample(&p->surface, &p->geometry, &p->params, &p->fluid, &p->sampling));
+  PetscCall(ProxySample(&p->surface, &p->geometry, &p->params, &p->fluid, p->density, &p->sampling));
   PetscCall(Reserve(p, p->sampling.n));
   for (PetscInt i = 0; i < p->sampling.n; i++) {
     PlacePoint(p, i, &p->points[i]);
@@ -281,6 +282,7 @@ PetscErrorCode ProxySetUp(Proxy p)
     PetscCall(PetscSNPrintf(key, sizeof(key), "%s.proxy.eta_max", p->name));
     PetscFunctionReturn(InputError(key, "is below eta_min = %g\n  eta_min..eta_max is the range of the normalised curvature", (double)p->params.eta_min));
   }
+  ByCall(ProxyReadDensity(p, &given));
   PetscCall(SurfaceKey(p, key, sizeof(key)));
   PetscCall(PetscMemzero(&p->surface, sizeof(p->surface)));
   ierr = ProxySurfaceBuild(key, p->params.feature_angle, &p->fluid, given.n_nodes, given.X, given.n_triangles, given.triangles, &p->surface);
@@ -462,6 +464,7 @@ PetscErrorCode ProxyDestroy(Proxy *proxy)
   PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
   PetscCall(PetscFree(p->node_velocity));
   PetscCall(PetscFree(p->node_weight));
+  PetscCall(PetscFree(p->density));
   PetscCall(PetscHeaderDestroy(&p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,13 +7,15 @@
 
 typedef struct _p_Proxy *Proxy;
 
-typedef enum { PROXY_KERNEL_HALF_SPACE, PROXY_KERNEL_ELLIPSOID } ProxyKernel;
+typedef enum { PROXY_KERNEL_HALF_SPACE, PROXY_KERNEL_ELLIPSOID, PROXY_KERNEL_SPHERE } ProxyKernel;
 typedef enum { PROXY_MEASURE_GAUSSIAN, PROXY_MEASURE_PRINCIPAL } ProxyMeasure;
 typedef enum { PROXY_RANGE_ROBUST, PROXY_RANGE_MINMAX } ProxyRange;
 
 /* Parameters of `<body>.proxy:` and `<obstacle>.proxy:`; ProxyKeys[] (proxy_keys.c) declares each. */
 typedef struct {
-  PetscBool adaptive;            /* density follows curvature; false = uniform, kappa-bar = 1                */
+  PetscBool adaptive;            /* density follows curvature; false = uniform                               */
+  PetscBool thin;                /* to the wanted spacing where the mesh is finer; false = a proxy at every vertex */
+  PetscReal kappa;               /* normalised curvature everywhere, uniform; 0 = as `adaptive` says         */
   PetscReal eta_min, eta_max;    /* range of the normalised curvature                                        */
   PetscReal inset;               /* the kernel's surface beneath the mesh by this many dx; negative = calibrated */
   PetscReal factor;              /* on the boundary volume; 0 = calibrated value of kernel and h/dx          */
@@ -22,6 +24,7 @@ typedef struct {
   int       kernel;              /* ProxyKernel                                                              */
   int       measure;             /* ProxyMeasure                                                             */
   int       range;               /* ProxyRange, of the Gaussian measure                                      */
+  char      density[PETSC_MAX_PATH_LEN]; /* CSV file of x, y, z [m], kappa-bar; none = as `adaptive` says     */
 } ProxyParams;
 
 BY_EXTERN const Key ProxyKeys[];
@@ -31,6 +34,8 @@ BY_EXTERN PetscErrorCode ProxyCreate(MPI_Comm comm, const char name[], Proxy *pr
 BY_EXTERN PetscErrorCode ProxyGetParams(Proxy proxy, ProxyParams **params);
 /* n_nodes nodes (also interior ones of a body: only those in triangles matter), triangles outward; copied */
 BY_EXTERN PetscErrorCode ProxySetSurface(Proxy proxy, PetscInt n_nodes, const PetscReal X[], PetscInt n_triangles, const PetscInt triangles[]);
+/* density of one's own: kappa-bar of every node, > 0 (spacing h/(2 kappa-bar)), in place of curvature; copied; before SetUp */
+BY_EXTERN PetscErrorCode ProxySetDensity(Proxy proxy, const PetscReal kappa[]);
 /* support radius h [m], spacing dx [m], kernel of the fluid; periodic box of the domain for minimal images */
 BY_EXTERN PetscErrorCode ProxySetFluid(Proxy proxy, SPH sph);
 BY_EXTERN PetscErrorCode ProxySetFromOptions(Proxy proxy);

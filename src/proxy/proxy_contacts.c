@@ -87,7 +87,7 @@ static void Support(const Proxy p, const ProxyPoint *b, double *half, double *ra
 {
   const double h = p->fluid.h;
 
-  if (p->params.kernel == PROXY_KERNEL_ELLIPSOID) {
+  if (p->params.kernel != PROXY_KERNEL_HALF_SPACE) {
     *half   = h;
     *radius = PetscMax(b->radius[0], b->radius[1]);
   } else {
@@ -410,7 +410,7 @@ static int RunChunk(Chunk *c, const Proxy p, PetscInt begin, PetscInt end, const
       if (cell < 0) break;
     }
     if (cell < 0 || cells->start[cell] == cells->start[cell + 1]) continue;
-    if (p->params.kernel == PROXY_KERNEL_ELLIPSOID) good = ParticleEllipsoid(c, p, i, &x[3*i], base, cells->start[cell], cells->start[cell + 1], touch, grad);
+    if (p->params.kernel != PROXY_KERNEL_HALF_SPACE) good = ParticleEllipsoid(c, p, i, &x[3*i], base, cells->start[cell], cells->start[cell + 1], touch, grad);
     else good = ParticleHalfSpace(c, p, i, &x[3*i], base, cells->start[cell], cells->start[cell + 1], touch);
   }
   return good;

@@ -247,15 +247,16 @@ static PetscErrorCode PrincipalMeasure(const ProxySurface *s, const ProxyGeometr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* kappa-bar in [eta_min, eta_max] of nodes, edges and triangles; 1 everywhere when the sampling is uniform */
+/* kappa-bar of nodes, edges and triangles: means of `density` where it is given, one value when the sampling is uniform, else
+   in [eta_min, eta_max] */
 PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *s, const ProxyGeometry *g, const ProxyParams *params, PetscReal h,
-                                        PetscReal node[], PetscReal edge[], PetscReal triangle[])
+                                        const PetscReal density[], PetscReal node[], PetscReal edge[], PetscReal triangle[])
 {
   PetscFunctionBegin;
-  if (!params->adaptive) {
-    for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = 1.0;
-    for (PetscInt e = 0; e < s->n_edges; e++) edge[e] = 1.0;
-    for (PetscInt t = 0; t < s->n_triangles; t++) triangle[t] = 1.0;
+  if (density || !params->adaptive || params->kappa > 0.0) {
+    for (PetscInt v = 0; v < s->n_nodes; v++) node[v] = density ? density[v] : params->kappa > 0.0 ? params->kappa : 1.0;
+    for (PetscInt e = 0; e < s->n_edges; e++) edge[e] = 0.5*(node[s->edge_nodes[2*e]] + node[s->edge_nodes[2*e + 1]]);
+    for (PetscInt t = 0; t < s->n_triangles; t++) triangle[t] = (node[s->triangles[3*t]] + node[s->triangles[3*t + 1]] + node[s->triangles[3*t + 2]])/3.0;
   } else if (params->measure == PROXY_MEASURE_PRINCIPAL) {
     PetscCall(PrincipalMeasure(s, g, params, h, node, edge, triangle));
   } else {

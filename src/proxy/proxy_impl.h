@@ -86,6 +86,7 @@ struct _p_Proxy {
   SPH           sph;
   PetscBool     setup, has_fluid;
   PetscReal     factor, inset;  /* calibrated or given: [1], [m]                                           */
+  PetscReal    *density;        /* n_nodes: kappa-bar that was given; NULL = none                          */
   ProxySurface  surface;
   ProxyGeometry geometry;
   ProxySampling sampling;
@@ -116,17 +117,20 @@ PetscErrorCode ProxyGeometryDestroy(ProxyGeometry *geometry);
 void           ProxyGeometryUpdate(const ProxySurface *surface, PetscReal max_curvature, ProxyGeometry *geometry);
 /* Gaussian curvature and mixed area by node; nodes outside the surface get 0 */
 PetscErrorCode ProxyGaussianCurvature(const ProxySurface *surface, const PetscReal x[], PetscReal kappa[], PetscReal area[]);
-/* kappa-bar by node, edge, triangle of the surface as it is in `geometry` */
+/* kappa-bar by node, edge, triangle of the surface as it is in `geometry`; density: that of the nodes, NULL = as params say */
 PetscErrorCode ProxyNormalizedCurvature(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyParams *params, PetscReal h,
-                                        PetscReal node[], PetscReal edge[], PetscReal triangle[]);
+                                        const PetscReal density[], PetscReal node[], PetscReal edge[], PetscReal triangle[]);
 void           ProxyShapeBound(PetscReal max_curvature, double S[6]);
 
 /* proxy_sample.c */
 PetscErrorCode ProxySample(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyParams *params, const ProxyFluid *fluid,
-                           ProxySampling *sampling);
+                           const PetscReal density[], ProxySampling *sampling);
 /* offsets and extents of `points` from the surface that they stand for, into the sampling */
 PetscErrorCode ProxyMeasureParts(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyPoint points[], ProxySampling *sampling);
 PetscErrorCode ProxySamplingDestroy(ProxySampling *sampling);
+
+/* proxy_density.c: what the scene says of the density, into proxy->density; `given` is the surface of the scene */
+PetscErrorCode ProxyReadDensity(Proxy proxy, const ProxySurface *given);
 
 /* proxy_contacts.c */
 PetscErrorCode ProxyFindContacts(Proxy proxy, PetscInt n, const PetscReal x[], SPHContacts *contacts);

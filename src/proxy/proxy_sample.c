@@ -393,7 +393,7 @@ static PetscErrorCode Store(const ProxySurface *s, const ProxyGeometry *g, const
 
 /* Sample the surface where it is now (method 4.2). The sampling is complete: the proxies' areas sum to the surface's. */
 PetscErrorCode ProxySample(const ProxySurface *s, const ProxyGeometry *g, const ProxyParams *params, const ProxyFluid *fluid,
-                           ProxySampling *sampling)
+                           const PetscReal density[], ProxySampling *sampling)
 {
   Candidates list = {0, 0, NULL};
   PetscReal *node, *edge, *triangle;
@@ -403,10 +403,10 @@ PetscErrorCode ProxySample(const ProxySurface *s, const ProxyGeometry *g, const 
   PetscFunctionBegin;
   PetscCall(ProxySamplingDestroy(sampling));
   PetscCall(PetscMalloc3(s->n_nodes, &node, s->n_edges, &edge, s->n_triangles, &triangle));
-  PetscCall(ProxyNormalizedCurvature(s, g, params, fluid->h, node, edge, triangle));
+  PetscCall(ProxyNormalizedCurvature(s, g, params, fluid->h, density, node, edge, triangle));
   PetscCall(AddVerticesAndEdges(s, g->x, fluid->h, node, edge, &list));
   PetscCall(AddInteriors(s, g, fluid->h, triangle, &list));
-  PetscCall(Thin(s, g, fluid->h, &list));
+  if (params->thin) PetscCall(Thin(s, g, fluid->h, &list));
   PetscCall(SplitAreas(s, g, fluid->h, triangle, &list, sampling, &n_parts, &parts));
   PetscCall(Store(s, g, &list, n_parts, parts, sampling));
   PetscCall(PetscFree(parts));
