@@ -12,7 +12,7 @@
 
 typedef struct _p_Coupler *Coupler;
 
-typedef enum { COUPLER_SCHEME_AUTO, COUPLER_SCHEME_EXPLICIT, COUPLER_SCHEME_MASS } CouplerScheme;
+typedef enum { COUPLER_SCHEME_AUTO, COUPLER_SCHEME_EXPLICIT, COUPLER_SCHEME_ITERATED, COUPLER_SCHEME_MASS } CouplerScheme;
 typedef enum {
   PROBE_DISPLACEMENT, /* of a body's material point [m], 3 columns                     */
   PROBE_VELOCITY,     /* of a body's point, or of the water at a place [m/s]           */
@@ -74,7 +74,13 @@ typedef struct {
   int       scheme;         /* CouplerScheme                                                          */
   PetscReal response_beta;  /* stiffness in the interface response (M + beta dt^2 K)^-1 of `mass`     */
   PetscInt  response_every; /* steps between refreshes of the response's tangent                      */
-  PetscInt  passes;         /* pressure solves a step of `mass`                                       */
+  PetscInt  passes;         /* most pressure solves a step of `mass`                                  */
+  int       relaxation;     /* RelaxationKind of `iterated`                                           */
+  PetscReal relaxation_start; /* its first factor without a response                                  */
+  PetscBool response;       /* `iterated`: walls answer within the pressure solve                     */
+  PetscInt  reuse;          /* steps whose differences the quasi-Newton iteration keeps               */
+  PetscReal tolerance;      /* relative change of the interface's velocity at which iterations end    */
+  PetscInt  iterations;     /* most pressure solves a step of `iterated`                              */
 } CouplerParams;
 
 typedef struct {
@@ -145,6 +151,9 @@ typedef struct {
   PetscReal fluid_kinetic, fluid_potential, fluid_viscous_loss;
   PetscReal solid_kinetic, solid_strain, solid_potential, solid_damping_loss;
   PetscReal work_fluid, work_solid;            /* at the interface since the start, as each side sees it [J] */
+  PetscReal work_exchanged;                    /* sum over bodies and steps of the fluid's absolute work at the interface [J] */
+  PetscInt  solves;                            /* pressure solves of the last step                           */
+  PetscReal interface_residual;                /* velocity of body less what the fluid has seen of it, rms over its rms; last step */
   PetscReal momentum[3], angular[3];           /* of fluid and bodies                                        */
   PetscReal compression_mean, compression_max; /* of the fluid                                               */
   PetscReal speed_max, speed_rms;              /* of the fluid                                               */

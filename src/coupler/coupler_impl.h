@@ -26,7 +26,9 @@ typedef struct {
   Proxy           proxy; /* NULL for a body that no fluid can reach                                       */
   PetscInt        n_nodes;
   PetscReal      *x;             /* n x 3 positions of an obstacle; NULL for a body                        */
-  PetscBool       answers;       /* this step: scheme `mass`, and water touches it                         */
+  CouplerScheme   scheme;        /* of a body                                                              */
+  PetscBool       touched, answers, iterates; /* this step: by water; within the pressure solve; is run until both sides agree */
+  PetscInt        n_interface, interface_start, *interface; /* nodes of the wetted surface, their place in the interface's vector */
   PetscBool       placed;        /* an obstacle's proxies are placed once                                   */
   PetscBool       slip, moves;   /* an obstacle along which fluid slips, one that moves                    */
   Motion          motion;
@@ -37,12 +39,13 @@ typedef struct {
   PetscReal      *force;         /* n x 3 [N] forces of the fluid on the nodes, last step                  */
   PetscReal      *start;         /* n x 3 [m] displacement at the start of the step                        */
   PetscReal      *mean_velocity; /* n x 3 [m/s] of the surface over the step                               */
-  PetscReal      *wall_velocity; /* n x 3 [m/s] what the fluid sees, less its response to the new forces   */
+  PetscReal      *wall_velocity; /* n x 3 [m/s] what the fluid sees, less the response to the new forces   */
+  PetscReal      *seen;          /* n x 3 [m/s] what the fluid has seen in the last solve                  */
   PetscReal      *answer;        /* n x 3 [m/s] response to the new forces                                 */
   PetscReal      *proxy_force;   /* per proxy, 3 [N]                                                       */
   PetscReal      *proxy_work;    /* per proxy, 3: scratch of the response                                  */
   PetscInt        capacity;      /* proxies allocated                                                      */
-  PetscReal       work_fluid, work_solid; /* [J] since the start                                           */
+  PetscReal       work_fluid, work_solid, work_exchanged; /* [J] since the start; the last is the sum of the fluid's absolute works */
   PetscReal       total[3];      /* [N] of the last step                                                   */
   PetscInt        substeps;      /* of the last step                                                       */
   PetscReal       n_substeps_sum, n_proxies_sum; /* over the steps since the start                         */
@@ -78,7 +81,13 @@ struct _p_Coupler {
   PetscReal      gravity[3];
   PetscInt       n_wall_motions;
   Motion         wall_motion[6], frame;
-  PetscBool      setup, compliant; /* compliant: scheme `mass` in use             */
+  PetscBool      responds;         /* the solver takes a response                 */
+  PetscBool      setup, compliant; /* compliant: some body answers within the pressure solve of this step */
+  PetscInt       n_interface;      /* unknowns of the interface                   */
+  PetscReal     *interface, *residual; /* [m/s] its velocity and residual         */
+  struct Relaxation *relaxation;
+  PetscInt       solves, n_unsettled;  /* pressure solves of the last step; steps whose iterations did not settle */
+  PetscReal      mismatch, solves_sum, mismatch_sum; /* relative residual of the last step; sums over all steps   */
   PetscReal      time, dt, mass;   /* mass of a particle [kg]                      */
   PetscReal      rest_density;
   PetscInt       step;
@@ -105,9 +114,22 @@ PETSC_INTERN PetscErrorCode CouplerResponseSetUp(Coupler coupler, CouplerSurface
 PETSC_INTERN PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], PetscReal velocity[]);
 PETSC_INTERN PetscErrorCode CouplerResponseApply(void *coupler, PetscInt n, const PetscReal p[], PetscReal Ap[]);
 PETSC_INTERN PetscErrorCode CouplerResponseDestroy(CouplerResponse *response);
+/* scheme_select.c */
+PETSC_INTERN PetscErrorCode CouplerSelectSchemes(Coupler coupler);
+PETSC_INTERN const char    *CouplerSchemeName(Coupler coupler); /* of the body that needs most */
+/* scheme_iterated.c */
+PETSC_INTERN PetscErrorCode CouplerNumberInterface(Coupler coupler);
+PETSC_INTERN PetscErrorCode CouplerCoupledStep(Coupler coupler, PetscReal dt);
 /* coupler.c */
 PETSC_INTERN PetscErrorCode CouplerUpdateContacts(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerTimer(Coupler coupler, CouplerPhase phase);
+/* coupler_exchange.c */
+PETSC_INTERN PetscErrorCode CouplerPredictWall(Coupler coupler, CouplerSurface *s, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerBaseVelocity(CouplerSurface *s);
+PETSC_INTERN PetscErrorCode CouplerSolveFluid(Coupler coupler, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerAdvanceBody(Coupler coupler, CouplerSurface *s, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerReturnBody(CouplerSurface *s);
+PETSC_INTERN void           CouplerAddWork(CouplerSurface *s, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerAngularMomentum(CouplerSurface *s, PetscReal L[3], PetscReal center[3]);
 PETSC_INTERN PetscErrorCode CouplerAddRotation(CouplerSurface *s, const PetscReal lost[3]);
 PETSC_INTERN void           CouplerMoment(PetscInt n, const PetscReal x[], const PetscReal f[], PetscReal moment[3]);

@@ -52,6 +52,8 @@ PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
   l->time = c->time;
   l->dt   = c->dt;
   l->step = c->step;
+  l->solves             = c->solves;
+  l->interface_residual = c->mismatch;
   if (c->sph) {
     SPHStats f;
 
@@ -79,6 +81,7 @@ PetscErrorCode CouplerGetLedger(Coupler c, CouplerLedger *l)
     l->proxies += c->contacts[k].n_proxies;
     l->work_fluid += s->work_fluid;
     l->work_solid += s->work_solid;
+    l->work_exchanged += s->work_exchanged;
     if (s->moves) l->work_motion -= s->work_fluid;
     if (!s->tled) continue;
     PetscCall(TLEDGetStats(s->tled, &b));

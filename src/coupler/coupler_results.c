@@ -12,7 +12,8 @@ static const char *const ledger_headers[] = {
   "momentum_z [kg m/s]", "angular_x [kg m^2/s]", "angular_y [kg m^2/s]", "angular_z [kg m^2/s]", "fluid_speed_max [m/s]",
   "fluid_speed_rms [m/s]", "solid_volume [m^3]",
   "solid_contact_energy [J]", "solid_external_work [J]", "work_motion [J]",
-  "fluid_particles [1]", "fluid_entered [m^3]", "fluid_left [m^3]"};
+  "fluid_particles [1]", "fluid_entered [m^3]", "fluid_left [m^3]",
+  "work_exchanged [J]", "solves [1]", "interface_residual [1]"};
 
 enum { N_LEDGER = sizeof(ledger_headers) / sizeof(ledger_headers[0]) };
 
@@ -75,7 +76,8 @@ static PetscErrorCode WriteLedger(Coupler c, CouplerResults *r)
                                    l.fluid_viscous_loss, l.solid_kinetic, l.solid_strain, l.solid_potential, l.solid_damping_loss, l.work_fluid,
                                    l.work_solid, l.momentum[0], l.momentum[1], l.momentum[2], l.angular[0], l.angular[1], l.angular[2],
                                    l.speed_max, l.speed_rms, l.solid_volume, l.solid_contact_energy,
-                                   l.solid_external_work, l.work_motion, (PetscReal)l.fluid_particles, l.fluid_entered, l.fluid_left};
+                                   l.solid_external_work, l.work_motion, (PetscReal)l.fluid_particles, l.fluid_entered, l.fluid_left,
+                                   l.work_exchanged, (PetscReal)l.solves, l.interface_residual};
   ByCall(TableWrite(r->ledger, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -210,7 +212,7 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
   Json                     json;
   PetscInt                 threads, n_devices;
   struct rusage            usage;
-  PetscReal                work_fluid = 0.0, work_solid = 0.0, drift = 0.0;
+  PetscReal                work_fluid = 0.0, work_solid = 0.0, work_exchanged = 0.0, drift = 0.0;
   char                     device[256];
 
   PetscFunctionBegin;
@@ -233,12 +235,16 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
     for (PetscInt k = 0; k < c->n_surfaces; k++) {
       work_fluid += c->surface[k].work_fluid;
       work_solid += c->surface[k].work_solid;
+      work_exchanged += c->surface[k].work_exchanged;
     }
     for (int i = 0; i < 3; i++) drift = PetscMax(drift, PetscAbsReal(r->momentum_end[i] - r->momentum_start[i]));
     PetscCall(JsonBegin(json, "coupling"));
-    PetscCall(JsonString(json, "scheme", c->compliant ? "mass" : "explicit"));
+    PetscCall(JsonString(json, "scheme", CouplerSchemeName(c)));
+    PetscCall(JsonReal(json, "solves_mean", c->solves_sum / PetscMax(1, c->step)));
+    PetscCall(JsonInt(json, "unsettled_steps", c->n_unsettled));
     PetscCall(JsonReal(json, "work_fluid", work_fluid));
     PetscCall(JsonReal(json, "work_solid", work_solid));
+    PetscCall(JsonReal(json, "work_exchanged", work_exchanged));
     PetscCall(JsonReal(json, "momentum_drift", drift));
     PetscCall(JsonInt(json, "penetrations", r->penetrations_max));
     PetscCall(JsonEnd(json));

@@ -1,11 +1,12 @@
 /* coupler_state.c - the whole state of a coupled run into a checkpoint and back. */
 #include "coupler_impl.h"
+#include "relaxation.h"
 
 static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
 {
   Vec              vec[3];
   const PetscReal *values;
-  PetscReal        sums[4], *state;
+  PetscReal        sums[5], *state;
   PetscInt         n_state;
   const char      *names[] = {"displacement", "velocity"};
   char             name[2 * BY_NAME_MAX];
@@ -35,8 +36,9 @@ static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
   sums[1] = s->work_solid;
   sums[2] = s->n_substeps_sum;
   sums[3] = s->n_proxies_sum;
+  sums[4] = s->work_exchanged;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
-  ByCall(CheckpointWriteReal(file, name, 4, sums));
+  ByCall(CheckpointWriteReal(file, name, 5, sums));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,7 +79,7 @@ static PetscErrorCode LoadObstacle(Checkpoint file, CouplerSurface *s)
 static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
 {
   Vec         vec[3];
-  PetscReal  *values, sums[4], *state;
+  PetscReal  *values, sums[5], *state;
   PetscInt    n_state;
   const char *names[] = {"displacement", "velocity"};
   char        name[2 * BY_NAME_MAX];
@@ -96,7 +98,8 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
   PetscCall(PetscArraycpy(values, s->force, 3 * s->n_nodes));
   PetscCall(VecRestoreArrayWrite(vec[2], &values));
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
-  ByCall(CheckpointReadReal(file, name, 4, sums));
+  ByCall(CheckpointReadReal(file, name, 5, sums));
+  s->work_exchanged = sums[4];
   s->work_fluid     = sums[0];
   s->work_solid     = sums[1];
   s->n_substeps_sum = sums[2];
@@ -143,6 +146,43 @@ static PetscErrorCode LoadFlows(SPH sph, Checkpoint file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* what iterations have learnt, and their books */
+static PetscErrorCode SaveInterface(Coupler c, Checkpoint file)
+{
+  PetscReal  sums[5] = {(PetscReal)c->solves, c->mismatch, c->solves_sum, c->mismatch_sum, (PetscReal)c->n_unsettled}, *state;
+  PetscInt   n;
+
+  PetscFunctionBegin;
+  PetscCall(RelaxationGetState(c->relaxation, &n, NULL));
+  PetscCall(PetscMalloc1(n, &state));
+  PetscCall(RelaxationGetState(c->relaxation, &n, state));
+  ByCall(CheckpointWriteReal(file, "interface/relaxation", n, state));
+  PetscCall(PetscFree(state));
+  ByCall(CheckpointWriteReal(file, "interface/sums", 5, sums));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadInterface(Coupler c, Checkpoint file)
+{
+  PetscReal sums[5], *state;
+  PetscInt  n;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointGetSize(file, "interface/relaxation", &n));
+  if (n < 0) PetscFunctionReturn(InputError("resume", "the checkpoint has no interface, but the scene has fluid and bodies"));
+  PetscCall(PetscMalloc1(n, &state));
+  ByCall(CheckpointReadReal(file, "interface/relaxation", n, state));
+  PetscCall(RelaxationSetState(c->relaxation, n, state));
+  PetscCall(PetscFree(state));
+  ByCall(CheckpointReadReal(file, "interface/sums", 5, sums));
+  c->solves       = (PetscInt)sums[0];
+  c->mismatch     = sums[1];
+  c->solves_sum   = sums[2];
+  c->mismatch_sum = sums[3];
+  c->n_unsettled  = (PetscInt)sums[4];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* write DIRECTORY/checkpoint.h5: everything a step reads */
 PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[])
 {
@@ -171,6 +211,7 @@ PetscErrorCode CouplerSave(Coupler c, const char directory[], const char scene[]
     PetscCall(SPHGetInternals(c->sph, internals));
     ByCall(CheckpointWriteReal(file, "fluid/internals", SPH_INTERNALS, internals));
     ByCall(SaveFlows(c->sph, file));
+    ByCall(SaveInterface(c, file));
   }
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(SaveBody(file, &c->surface[k]));
   for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++)
@@ -213,6 +254,7 @@ PetscErrorCode CouplerLoad(Coupler c, const char directory[])
   c->dt             = clock[1];
   c->iterations_sum = clock[2];
   if (c->sph) ByCall(LoadFluid(c, file));
+  if (c->sph) ByCall(LoadInterface(c, file));
   for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(LoadBody(file, &c->surface[k]));
   for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++)
     if (c->surface[k].moves) ByCall(LoadObstacle(file, &c->surface[k]));

@@ -208,7 +208,7 @@ PetscErrorCode CouplerResponseApply(void *ctx, PetscInt n, const PetscReal p[], 
     CouplerSurface  *s = &c->surface[k];
     const PetscReal *factor;
 
-    if (!s->proxy || !c->contacts[k].n_touched) continue;
+    if (!s->answers) continue;
     PetscCall(SPHGetUnionFactors(c->sph, k, &factor));
     PetscCall(ForcesFromPressure(c, k, p, factor));
     PetscCall(CouplerResponseSolve(s, s->answer, s->answer));
