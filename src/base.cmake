@@ -6,13 +6,14 @@ function(byssus_module name)
 endfunction()
 
 byssus_module(base src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/array.c src/backend.c src/surface.c src/surface_read.c src/course.c src/motion.c
-  src/output.c src/output_file.c src/output_series.c src/output_xdmf.c src/output_table.c src/output_progress.c src/plot.c src/checkpoint.c)
+  src/output.c src/output_file.c src/output_series.c src/output_xdmf.c src/output_table.c src/output_progress.c src/plot.c src/checkpoint.c
+  src/sweep.c src/sweep_grid.c src/sweep_jobs.c src/sweep_table.c)
 
 # results and checkpoints name the program's version
 set_source_files_properties(src/output_series.c src/checkpoint.c PROPERTIES COMPILE_DEFINITIONS BY_VERSION="${PROJECT_VERSION}")
 
 # messages quote what the user wrote and may cut it short: truncation by snprintf is meant
-set_source_files_properties(src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/course.c PROPERTIES COMPILE_OPTIONS
+set_source_files_properties(src/keys.c src/scene.c src/scene_yaml.c src/scene_check.c src/scene_keys.c src/course.c src/sweep_grid.c src/sweep_table.c PROPERTIES COMPILE_OPTIONS
   "-Wno-format-truncation;-Wno-restrict")
 
 # what the program says about itself; a tree without git has no revision

@@ -13,11 +13,12 @@
 /* exit statuses of the program (docs: README, "Exit status") */
 enum { BY_EXIT_DONE = 0, BY_EXIT_FAILURE = 1, BY_EXIT_INPUT = 2, BY_EXIT_BREAKDOWN = 3, BY_EXIT_INTERRUPTED = 130 };
 
-/* error codes of ours beside PETSc's: the user's input is wrong (already reported by InputError), and a simulation that broke
-   down (the object's GetBreakdown tells why). They, and all codes from 9001 to 9099, travel without a traceback:
-   call with ByCall. */
-#define BY_ERR_INPUT     ((PetscErrorCode)9001)
-#define BY_ERR_BREAKDOWN ((PetscErrorCode)9002)
+/* error codes of ours beside PETSc's: the user's input is wrong (already reported by InputError), a simulation that broke
+   down (the object's GetBreakdown tells why), and Ctrl-C with the state saved. They, and all codes from 9001 to 9099, travel without a
+   traceback: call with ByCall. */
+#define BY_ERR_INPUT       ((PetscErrorCode)9001)
+#define BY_ERR_BREAKDOWN   ((PetscErrorCode)9002)
+#define BY_ERR_INTERRUPTED ((PetscErrorCode)9004)
 
 #define ByCall(...) \
   do { \

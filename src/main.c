@@ -1,8 +1,8 @@
-/* main.c - the program: byssus run | check | verify | plot | info. */
+/* main.c - the program: byssus run | check | verify | sweep | plot | info. */
 #include "backend.h"
 #include "coupler/coupler.h"
 #include "plot.h"
-#include "scene.h"
+#include "sweep.h"
 
 #include <petscviewer.h>
 #include <stdio.h>
@@ -64,9 +64,9 @@ static PetscErrorCode WithScene(int argc, char *argv[], PetscBool simulate)
   return result;
 }
 
+static PetscErrorCode Sweep(int argc, char *argv[]) { return SweepRun(argc, argv, CouplerSchema); }
 static PetscErrorCode Run(int argc, char *argv[]) { return WithScene(argc, argv, PETSC_TRUE); }
 static PetscErrorCode Check(int argc, char *argv[]) { return WithScene(argc, argv, PETSC_FALSE); }
-
 static PetscErrorCode Info(int argc, char *argv[])
 {
   if (argc > 0 && !strcmp(argv[0], "-keys")) return ScenePrintKeys(CouplerSchema, "markdown", stdout);
@@ -94,6 +94,7 @@ static const Command commands[] = {
     {"run", "SCENE.yaml [-resume DIR] [-key value ...]", "simulate into a run directory", Run},
     {"check", "SCENE.yaml [-key value ...]", "validate and print the plan; writes nothing", Check},
     {"verify", "SCENE.yaml [-key value ...]", "explicit against implicit solid, same mesh: table, picture", Verify},
+    {"sweep", "SCENE.yaml -over key=v,v ... [-reference key=v]", "all combinations against a reference: table, picture", Sweep},
     {"plot", "RUN...", "pictures of runs", NULL},
     {"info", "[-keys]", "version, libraries, devices; all keys as markdown", Info},
 };
@@ -101,17 +102,16 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static int Help(void)
 {
-  for (int i = 0; i < N_COMMANDS; i++) printf("byssus %-6s %-42s %s\n", commands[i].name, commands[i].arguments, commands[i].help);
-  printf("\nExit status: 0 done, 1 failure, 2 bad input (nothing was run), 3 the simulation broke down (state saved) or verify "
-         "found more than its tolerance, 130 "
-         "interrupted.\n\n");
+  for (int i = 0; i < N_COMMANDS; i++) printf("byssus %-6s %-48s %s\n", commands[i].name, commands[i].arguments, commands[i].help);
+  printf("\nExit status: 0 done, 1 failure, 2 bad input (nothing was run), 3 the simulation broke down (state saved) or verify found more than "
+         "its tolerance, 130 interrupted.\n\n");
   return ExitStatus(ScenePrintKeys(CouplerSchema, "text", stdout));
 }
 
 static int Usage(void)
 {
-  fprintf(stderr, "usage: byssus run|check|verify SCENE.yaml [-key value ...]   or   byssus plot RUN...   or   byssus info\n");
-  fprintf(stderr, "       byssus -help lists commands and keys\n");
+  fprintf(stderr, "usage: byssus run|check|verify|sweep SCENE.yaml [-key value ...]   or   byssus plot RUN...   or   byssus info\n"
+                  "       byssus -help lists commands and keys\n");
   return BY_EXIT_INPUT;
 }
 

@@ -225,7 +225,7 @@ PetscErrorCode SceneWrite(Scene scene, const char path[])
       WriteComment(scene->overrides[i].value ? scene->overrides[i].value : "", out);
     }
     fputc('\n', out);
-    PetscCall(NodeWrite(scene->root, out));
+    PetscCall(NodeWrite(scene->root, NULL, out));
     if (ferror(out)) failed = PETSC_TRUE;
     if (fclose(out)) failed = PETSC_TRUE;
   }
@@ -233,6 +233,21 @@ PetscErrorCode SceneWrite(Scene scene, const char path[])
     fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(errno));
     PetscFunctionReturn(BY_ERR_OUTPUT);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SceneFormat(Scene scene, const char without[], char **text)
+{
+  size_t n;
+  FILE  *out = open_memstream(text, &n);
+
+  PetscFunctionBegin;
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the text of a scene");
+  PetscCall(NodeWrite(scene->root, without, out));
+  for (PetscInt i = 0; i < scene->n_overrides; i++) {
+    if (!scene->overrides[i].used) fprintf(out, "# -%s %s\n", scene->overrides[i].name, scene->overrides[i].value ? scene->overrides[i].value : "");
+  }
+  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the text of a scene");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

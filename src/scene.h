@@ -37,6 +37,8 @@ BY_EXTERN PetscErrorCode SceneGetText(Scene scene, const char *text[]);         
 BY_EXTERN PetscErrorCode SceneGetPath(Scene scene, const char *path[]);
 /* the scene as run: YAML text with the command line's overrides merged in */
 BY_EXTERN PetscErrorCode SceneWrite(Scene scene, const char path[]);
+/* the same as a text without one section of the top; free() it */
+BY_EXTERN PetscErrorCode SceneFormat(Scene scene, const char without[], char **text);
 /* table of all keys (for -help and the README's reference): kind is "text" or "markdown" */
 BY_EXTERN PetscErrorCode ScenePrintKeys(const SceneSection sections[], const char kind[], FILE *out);
 

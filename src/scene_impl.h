@@ -57,7 +57,7 @@ PETSC_INTERN void           NodeAppend(Node *parent, Node *child);
 PETSC_INTERN Node          *NodeFind(const Node *map, const char key[]);
 PETSC_INTERN void           NodeFormat(const Node *node, char text[], size_t n); /* "[0, 1, 2]" on one line */
 PETSC_INTERN void           NodeDestroy(Node **node);
-PETSC_INTERN PetscErrorCode NodeWrite(const Node *root, FILE *out);
+PETSC_INTERN PetscErrorCode NodeWrite(const Node *root, const char without[], FILE *out); /* without: a key of the root, or NULL */
 
 /* scene_check.c: tree and overrides against the tables */
 PETSC_INTERN PetscErrorCode SceneCheck(Scene scene, const SceneSection sections[]);

@@ -263,10 +263,18 @@ static void WriteNode(const Node *node, int indent, FILE *out)
   }
 }
 
-PetscErrorCode NodeWrite(const Node *root, FILE *out)
+PetscErrorCode NodeWrite(const Node *root, const char without[], FILE *out)
 {
   PetscFunctionBegin;
-  WriteNode(root, 0, out);
-  fputc('\n', out);
+  for (const Node *child = root->child; child; child = child->next) {
+    Node alone = *root, only = *child;
+
+    if (without && child->key && !strcmp(child->key, without)) continue;
+    alone.child = alone.last = &only;
+    only.next                = NULL;
+    WriteNode(&alone, 0, out);
+    fputc('\n', out);
+  }
+  if (!root->child) fputs("{}\n", out);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,8 +8,6 @@
 #include "tled/tled.h"
 #include "proxy/proxy.h"
 
-#define BY_ERR_INTERRUPTED ((PetscErrorCode)9004) /* Ctrl-C: state saved, resumable */
-
 typedef struct _p_Coupler *Coupler;
 
 typedef enum { COUPLER_SCHEME_AUTO, COUPLER_SCHEME_EXPLICIT, COUPLER_SCHEME_ITERATED, COUPLER_SCHEME_MASS } CouplerScheme;

@@ -93,6 +93,7 @@ struct _p_Coupler {
   PetscInt       step;
   PetscReal      iterations_sum;
   PetscLogDouble phase[N_PHASES], mark; /* [s] wall                                  */
+  PetscLogDouble phase_cpu[N_PHASES], mark_cpu; /* [s] of all threads                */
   char           breakdown[1024];
 };
 

@@ -1,5 +1,6 @@
 /* coupler_keys.c - keys of the scene that belong to no single module, and the schema of a whole scene. */
 #include "coupler/coupler.h"
+#include "sweep.h"
 #include "tled/tled_implicit.h"
 
 #define HUGE_LENGTH 1e6 /* [m], larger than anything a particle method resolves: catches wrong units */
@@ -140,5 +141,7 @@ const SceneSection CouplerSchema[] = {
   {"coupler",  CouplerKeys,  NULL,       NULL,        "the staggered loop"},
   {"probe",    ProbeKeys,    NULL,       "probes",    "a gauge"},
   {"verify",   VerifyKeys,   NULL,       NULL,        "explicit against implicit solid (byssus verify)"},
+  {"sweep",    SweepKeys,    NULL,       NULL,        "a grid of runs over keys of the scene, against a reference (byssus sweep)"},
+  {"axis",     SweepAxisKeys, "sweep",   "over",      "what is varied"},
   {NULL, NULL, NULL, NULL, NULL}};
 // clang-format on

@@ -212,7 +212,7 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
   Json                     json;
   PetscInt                 threads, n_devices;
   struct rusage            usage;
-  PetscReal                work_fluid = 0.0, work_solid = 0.0, work_exchanged = 0.0, drift = 0.0;
+  PetscReal                work_fluid = 0.0, work_solid = 0.0, work_exchanged = 0.0, drift = 0.0, cpu = 0.0;
   char                     device[256];
 
   PetscFunctionBegin;
@@ -226,8 +226,13 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
   PetscCall(JsonReal(json, "wall_seconds", wall_seconds));
   PetscCall(JsonReal(json, "cpu_seconds", (PetscReal)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                                             1e-6 * (PetscReal)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec)));
+  for (int k = 0; k < PHASE_OUTPUT; k++) cpu += c->phase_cpu[k];
+  PetscCall(JsonReal(json, "cpu_seconds_per_step", cpu / PetscMax(1, r->steps)));
   PetscCall(JsonBegin(json, "phases"));
   for (int k = 0; k < N_PHASES; k++) PetscCall(JsonReal(json, phases[k], c->phase[k]));
+  PetscCall(JsonEnd(json));
+  PetscCall(JsonBegin(json, "phases_cpu"));
+  for (int k = 0; k < N_PHASES; k++) PetscCall(JsonReal(json, phases[k], c->phase_cpu[k]));
   PetscCall(JsonEnd(json));
   if (c->sph) PetscCall(SummaryFluid(c, r, json));
   if (c->n_surfaces) PetscCall(SummaryBodies(c, json));

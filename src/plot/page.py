@@ -25,13 +25,16 @@ p.lead { color: var(--muted); margin: 0 0 1.5rem; }
 figure { margin: 1rem 0; background: #ffffff; border: 1px solid var(--line); border-radius: 10px; overflow: hidden; }
 figure img { display: block; width: 100%; height: auto; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; }
+td, th { text-align: left; }
 td { border-bottom: 1px solid var(--line); padding: .3rem .6rem .3rem 0; overflow-wrap: anywhere; }
 td:first-child { color: var(--muted); width: 40%; }
 pre { background: var(--card); border: 1px solid var(--line); border-radius: 10px; padding: 1rem; overflow-x: auto; font-size: .85rem; line-height: 1.45; }
 """
 
 TITLES = {"final.png": "Last state", "moments.png": "Four moments", "probes.png": "Probes", "energies.png": "Energies", "solver.png": "Solver", "compare.png": "Runs beside each other",
-          "verification.png": "Explicit against implicit"}
+          "verification.png": "Explicit against implicit", "sweep.png": "Speed against error"}
+
+TAIL = "</main>\n</body>\n</html>\n"
 
 
 def flatten(value, prefix=""):
@@ -68,12 +71,24 @@ def figure(path):
     return f'<h2>{title}</h2>\n<figure><img alt="{title}" src="data:image/png;base64,{data}"></figure>\n'
 
 
+def head(title):
+    return ("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+            f"<meta name=\"color-scheme\" content=\"light dark\">\n<title>{html.escape(title)}</title>\n<style>{CSS}</style>\n</head>\n<body>\n<main>\n")
+
+
+def write(parts, path):
+    def body(name):
+        with open(name, "w", encoding="utf-8") as file:
+            file.write("".join(parts))
+
+    style.write(path, body)
+
+
 def write_page(run, pictures, path):
     summary = run.summary
     status = f'<span class="status">{html.escape(str(summary["status"]))}</span>' if "status" in summary else ""
     parts = [
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        f"<meta name=\"color-scheme\" content=\"light dark\">\n<title>{html.escape(run.name)}</title>\n<style>{CSS}</style>\n</head>\n<body>\n<main>\n",
+        head(run.name),
         f"<h1>{html.escape(run.name)}{status}</h1>\n<p class=\"lead\">{html.escape(os.path.abspath(run.directory))}</p>\n",
         '<div class="facts">' + "".join(f"<div><b>{html.escape(v)}</b><span>{html.escape(n)}</span></div>" for n, v in facts(run)) + "</div>\n",
     ]
@@ -83,10 +98,5 @@ def write_page(run, pictures, path):
         parts.append(f"<h2>Summary</h2>\n<table>\n{rows}</table>\n")
     if run.scene_text:
         parts.append(f"<h2>Scene</h2>\n<pre>{html.escape(run.scene_text)}</pre>\n")
-    parts.append("</main>\n</body>\n</html>\n")
-
-    def body(name):
-        with open(name, "w", encoding="utf-8") as file:
-            file.write("".join(parts))
-
-    style.write(path, body)
+    parts.append(TAIL)
+    write(parts, path)

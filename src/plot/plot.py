@@ -2,7 +2,7 @@
 """plot.py - pictures (PNG) and one self-contained HTML page of runs: plot.py RUN... [-width PIXELS]
 
 Writes RUN/plots/final.png, moments.png, probes.png, profile_<probe>.png, energies.png, solver.png (those for which the run has data) and index.html; of several
-runs also compare.png, into each; of `byssus verify` verification.png. Needs no display. Status 0 done, 1 a picture could not be written, 2 a directory is not a run or is damaged.
+runs also compare.png, into each; of `byssus verify` verification.png, of `byssus sweep` sweep.png. Needs no display. Status 0 done, 1 a picture could not be written, 2 a directory is not a run or is damaged.
 """
 
 import os
@@ -16,6 +16,7 @@ try:
     import charts
     import page
     import picture
+    import sweep
     import verification
 except ImportError as error:
     sys.exit(f"byssus plot: {error} (Debian: apt install python3-numpy python3-h5py python3-matplotlib python3-yaml)")
@@ -77,7 +78,10 @@ def main(arguments):
         return 0 if arguments else 2
     try:
         directories, width = read_arguments(arguments)
-        runs = [Run(directory) for directory in directories]  # all are looked at before anything is drawn
+        sweeps = [directory for directory in directories if sweep.is_sweep(directory)]
+        runs = [Run(directory) for directory in directories if directory not in sweeps]  # all are looked at before anything is drawn
+        for directory in sweeps:
+            print(sweep.draw(directory))
         pictures = [draw_run(run, width) for run in runs]
         if len(runs) > 1:
             for run, paths in zip(runs, pictures):
