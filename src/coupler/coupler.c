@@ -165,8 +165,7 @@ PetscErrorCode CouplerUpdateContacts(Coupler c)
     c->contacts[k] = (SPHContacts){0};
     if (!s->proxy) continue;
     if (s->tled) PetscCall(TLEDGetPositions(s->tled, &x, &v));
-    if (s->tled || s->moves || !s->placed) PetscCall(ProxyUpdate(s->proxy, x, s->tled ? s->mean_velocity : s->v_nodes));
-    s->placed = PETSC_TRUE;
+    PetscCall(ProxyUpdate(s->proxy, x, s->tled ? s->mean_velocity : s->v_nodes));
     PetscCall(ProxyGetContacts(s->proxy, &c->contacts[k]));
     if (c->contacts[k].n_proxies > s->capacity) {
       s->capacity = c->contacts[k].n_proxies + c->contacts[k].n_proxies / 2;

@@ -29,7 +29,6 @@ typedef struct {
   CouplerScheme   scheme;        /* of a body                                                              */
   PetscBool       touched, answers, iterates; /* this step: by water; within the pressure solve; is run until both sides agree */
   PetscInt        n_interface, interface_start, *interface; /* nodes of the wetted surface, their place in the interface's vector */
-  PetscBool       placed;        /* an obstacle's proxies are placed once                                   */
   PetscBool       slip, moves;   /* an obstacle along which fluid slips, one that moves                    */
   Motion          motion;
   PetscReal      *x_rest, *x_next, *v_nodes; /* n x 3, of one that moves: before its motion, at the end of the step [m]; mean velocity [m/s] */

@@ -94,156 +94,16 @@ static PetscErrorCode SurfaceKey(Proxy proxy, char key[], size_t n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* room for n proxies */
-static PetscErrorCode Reserve(Proxy p, PetscInt n)
+/* normals, areas and shapes of the surface at geometry.x; nodal shares of the area */
+static void UpdateGeometry(Proxy p)
 {
-  PetscFunctionBegin;
-  if (n <= p->capacity) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree(p->reach));
-  PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
-  p->capacity = n + n/4;
-  PetscCall(PetscMalloc1(p->capacity, &p->reach));
-  PetscCall(PetscMalloc7(p->capacity, &p->points, 3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity,
-                         &p->force, 3*p->capacity, &p->centre));
-  PetscCall(PetscArrayzero(p->force, 3*p->capacity));
-  PetscCall(PetscArrayzero(p->points, p->capacity));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  const ProxySurface *s = &p->surface;
 
-/* position, normal, area and shape operator of proxy i on the surface as it is */
-static void PlacePoint(Proxy p, PetscInt i, ProxyPoint *b)
-{
-  const ProxySurface  *s = &p->surface;
-  const ProxyGeometry *g = &p->geometry;
-  const ProxySampling *q = &p->sampling;
-  const PetscInt       t = q->triangle[i];
-  double               area = 0.0, S[6] = {0}, n[3] = {0}, x[3] = {0}, l;
-
-  for (int c = 0; c < 3; c++) {
-    for (int k = 0; k < 3; k++) {
-      x[k] += q->weights[3*i + c]*g->x[3*q->nodes[3*i + c] + k];
-      n[k] += q->weights[3*i + c]*g->fan_normal[3*s->fan[3*t + c] + k];
-    }
+  ProxyGeometryUpdate(s, PROXY_CURVATURE/p->fluid.h, &p->geometry);
+  for (PetscInt v = 0; v < s->n_nodes; v++) p->node_weight[v] = 0.0;
+  for (PetscInt t = 0; t < s->n_triangles; t++) {
+    for (int i = 0; i < 3; i++) p->node_weight[s->triangles[3*t + i]] += p->geometry.area[t]/3.0;
   }
-  l = Norm3(n);
-  for (int k = 0; k < 3; k++) n[k] = l > 0.0 ? n[k]/l : g->normal[3*t + k];
-
-  // shape operator and centre: means over the part of the surface that the proxy stands for
-  double centre[3] = {0};
-  for (PetscInt k = q->part_start[i]; k < q->part_start[i + 1]; k++) {
-    const double a = q->part[k]*g->area[q->part_triangle[k]];
-    area += a;
-    for (int c = 0; c < 3; c++) {
-      for (int d = 0; d < 3; d++) centre[d] += a/3.0*g->x[3*s->triangles[3*q->part_triangle[k] + c] + d];
-    }
-    ProxyShapeAddTurned(&g->shape[6*q->part_triangle[k]], &g->normal[3*q->part_triangle[k]], n, a, S);
-  }
-  if (area > 0.0) {
-    for (int m = 0; m < 6; m++) S[m] /= area;
-  } else {
-    ProxyShapeAddTurned(&g->shape[6*t], &g->normal[3*t], n, 1.0, S);
-  }
-  ProxyShapeBound(PROXY_CURVATURE/p->fluid.h, S);
-
-  for (int k = 0; k < 3; k++) {
-    p->centre[3*i + k] = area > 0.0 ? centre[k]/area : x[k];
-    p->x[3*i + k]      = b->x[k] = x[k];
-    p->normal[3*i + k] = b->n[k] = n[k];
-  }
-  for (int m = 0; m < 6; m++) b->S[m] = S[m];
-  b->bend    = ProxyShapeBend(S);
-  b->offset  = q->offset[i] - (p->params.kernel == PROXY_KERNEL_HALF_SPACE ? p->inset : 0.0);
-  p->area[i] = b->weight = area;
-}
-
-/* unit tangent along a side of the triangle, its edge for proxies on edges; returns the side's length */
-static double PlaceTangent(const Proxy p, PetscInt i, ProxyPoint *b)
-{
-  const ProxySampling *q = &p->sampling;
-  const int            side = q->side[i] >= 0 ? q->side[i] : 0;
-  double               e[3], along, tangent;
-
-  Sub3(&p->geometry.x[3*q->nodes[3*i + (side + 1)%3]], &p->geometry.x[3*q->nodes[3*i + side]], e);
-  const double length = Norm3(e);
-  along = Dot3(e, b->n);
-  for (int k = 0; k < 3; k++) b->e[k] = e[k] - along*b->n[k];
-  tangent = Norm3(b->e);
-  for (int k = 0; k < 3; k++) b->e[k] /= tangent;
-  return length;
-}
-
-/* is the proxy on a sharp edge or corner, or on the border? */
-static PetscBool OnSharpEdge(const Proxy p, PetscInt i)
-{
-  const ProxySampling *q = &p->sampling;
-  const PetscInt       t = q->triangle[i];
-
-  if (q->kind[i] == PROXY_EDGE) return p->surface.edge_sharp[p->surface.triangle_edges[3*t + q->side[i]]];
-  for (int k = 0; k < 3; k++) {
-    if (q->weights[3*i + k] == 1.0) return p->surface.fan_sharp[p->surface.fan[3*t + k]];
-  }
-  return PETSC_FALSE;
-}
-
-/* Supports. Half-space: radius h/kappa-bar in the tangent plane, larger where the triangle has grown. Sphere: h. Ellipsoid (method 4.3): on
-   edges a = 2 d_E along the edge, b = c = h; at vertices a sphere; on triangles a = b = h/kappa-bar; stretched with edge and area. Where
-   proxies are thinned only sharp edges and corners count as such, the rest as triangles, whatever it was sampled on: the paper's spheres at
-   all vertices would leave holes where thinning has taken the proxies between them. */
-static void PlaceSupport(Proxy p, PetscInt i, ProxyPoint *b)
-{
-  const ProxySurface  *s = &p->surface;
-  const ProxySampling *q = &p->sampling;
-  const double         h = p->fluid.h, R = h/q->kappa[i], length = PlaceTangent(p, i, b);
-  const PetscInt       t = q->triangle[i];
-  const double         stretch = sqrt(p->geometry.area[t]/q->area0[t]);
-
-  if (p->params.kernel == PROXY_KERNEL_HALF_SPACE) {
-    b->radius[0] = b->radius[1] = R*PetscMax(1.0, stretch);
-    for (int k = 0; k < 8; k++) b->extent[k] = q->extent[8*i + k]*PetscMax(1.0, stretch);
-    return;
-  }
-  b->radius[0] = b->radius[1] = p->params.kernel == PROXY_KERNEL_SPHERE ? h : R*stretch;
-  if (p->params.kernel == PROXY_KERNEL_ELLIPSOID && (p->params.thin ? OnSharpEdge(p, i) : q->kind[i] != PROXY_FACE)) {
-    b->radius[0] = q->kind[i] == PROXY_EDGE ? R*length/q->edge0[s->triangle_edges[3*t + q->side[i]]] : h;
-    b->radius[1] = h;
-  }
-  b->inset = p->inset;
-  for (int k = 0; k < 3; k++) b->x[k] -= p->inset*b->n[k];
-}
-
-static PetscErrorCode PlaceProxies(Proxy p)
-{
-  const ProxySampling *q = &p->sampling;
-
-  PetscFunctionBegin;
-#pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < q->n; i++) PlacePoint(p, i, &p->points[i]);
-#pragma omp parallel for schedule(static)
-  for (PetscInt i = 0; i < q->n; i++) PlaceSupport(p, i, &p->points[i]);
-  if (p->params.kernel != PROXY_KERNEL_HALF_SPACE) PetscCall(ProxyEllipsoidVolumes(p->fluid.kernel, p->fluid.h, p->factor, q->n, p->points));
-
-  // nodal shares of the area
-  PetscCall(PetscArrayzero(p->node_weight, p->surface.n_nodes));
-  for (PetscInt i = 0; i < q->n; i++) {
-    for (int c = 0; c < 3; c++) p->node_weight[q->nodes[3*i + c]] += p->area[i]*q->weights[3*i + c];
-  }
-  p->cells_valid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PlaceVelocities(Proxy p)
-{
-  const ProxySampling *q = &p->sampling;
-
-  PetscFunctionBegin;
-  if (!p->node_velocity) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < q->n; i++) {
-    for (int k = 0; k < 3; k++) {
-      p->velocity[3*i + k] = 0.0;
-      for (int c = 0; c < 3; c++) p->velocity[3*i + k] += q->weights[3*i + c]*p->node_velocity[3*q->nodes[3*i + c] + k];
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Sample(Proxy p)
@@ -251,12 +111,9 @@ static PetscErrorCode Sample(Proxy p)
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(EventSample, 0, 0, 0, 0));
   PetscCall(ProxySample(&p->surface, &p->geometry, &p->params, &p->fluid, p->density, &p->sampling));
-  PetscCall(Reserve(p, p->sampling.n));
-  for (PetscInt i = 0; i < p->sampling.n; i++) {
-    PlacePoint(p, i, &p->points[i]);
-    (void)PlaceTangent(p, i, &p->points[i]);
-  }
+  PetscCall(ProxyPlaceSampled(p));
   PetscCall(ProxyMeasureParts(&p->surface, &p->geometry, p->points, &p->sampling));
+  p->mask.has_boxes = PETSC_FALSE;
   p->n_samplings++;
   PetscCall(PetscLogEventEnd(EventSample, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -298,9 +155,9 @@ PetscErrorCode ProxySetUp(Proxy p)
   PetscCall(ProxyGeometryCreate(&p->surface, &p->geometry));
   PetscCall(PetscMalloc1(p->surface.n_nodes, &p->node_weight));
   PetscCall(PetscArraycpy(p->geometry.x, p->surface.X, 3*p->surface.n_nodes));
-  ProxyGeometryUpdate(&p->surface, PROXY_CURVATURE/p->fluid.h, &p->geometry);
+  UpdateGeometry(p);
   PetscCall(Sample(p));
-  PetscCall(PlaceProxies(p));
+  PetscCall(ProxyPlaceAll(p));
   p->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -332,8 +189,9 @@ static PetscReal Change(const Proxy p)
 
   Notes:
   Positions follow by barycentric weights; normals, shape operators and areas are those of the deformed surface. The surface is sampled
-  afresh when an edge or area has changed by more than resample_tolerance since the last sampling; then the number of proxies may
-  change. A surface that has not moved costs a comparison.
+  afresh when an edge or area has changed by more than resample_tolerance since the last sampling. Only proxies that a particle of the
+  fluid may touch where it is now are placed and in use: their number changes from step to step. A surface that has not moved, and where no
+  water came or went, costs a comparison.
 @*/
 PetscErrorCode ProxyUpdate(Proxy p, const PetscReal x[], const PetscReal v[])
 {
@@ -345,10 +203,16 @@ PetscErrorCode ProxyUpdate(Proxy p, const PetscReal x[], const PetscReal v[])
   PetscCall(PetscArraycmp(p->geometry.x, x, 3*p->surface.n_nodes, &same));
   if (!same) {
     PetscCall(PetscArraycpy(p->geometry.x, x, 3*p->surface.n_nodes));
-    ProxyGeometryUpdate(&p->surface, PROXY_CURVATURE/p->fluid.h, &p->geometry);
+    UpdateGeometry(p);
     if (p->params.resample_tolerance == 0.0 || Change(p) > p->params.resample_tolerance) PetscCall(Sample(p));
-    PetscCall(PlaceProxies(p));
   }
+  if (p->sph) {
+    const PetscReal *at;
+    PetscInt         n;
+    PetscCall(SPHGetSize(p->sph, &n));
+    PetscCall(SPHGetState(p->sph, &at, NULL, NULL, NULL, NULL));
+    PetscCall(ProxyPlaceNear(p, (PetscBool)!same, n, at));
+  } else if (!same) PetscCall(ProxyPlaceAll(p));
   PetscCall(ProxySetVelocity(p, v));
   PetscCall(PetscLogEventEnd(EventUpdate, p, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -366,7 +230,7 @@ PetscErrorCode ProxySetVelocity(Proxy p, const PetscReal v[])
     if (!p->node_velocity) PetscCall(PetscMalloc1(3*p->surface.n_nodes, &p->node_velocity));
     PetscCall(PetscArraycpy(p->node_velocity, v, 3*p->surface.n_nodes));
   }
-  PetscCall(PlaceVelocities(p));
+  PetscCall(ProxyPlaceVelocities(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -390,10 +254,10 @@ PetscErrorCode ProxySetSampling(Proxy p, const PetscReal x[])
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
   PetscCall(PetscArraycpy(p->geometry.x, x, 3*p->surface.n_nodes));
-  ProxyGeometryUpdate(&p->surface, PROXY_CURVATURE/p->fluid.h, &p->geometry);
+  UpdateGeometry(p);
   PetscCall(Sample(p));
-  PetscCall(PlaceProxies(p));
-  PetscCall(PlaceVelocities(p));
+  PetscCall(ProxyPlaceAll(p));
+  PetscCall(ProxyPlaceVelocities(p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -401,9 +265,9 @@ PetscErrorCode ProxyGetInterpolation(Proxy p, PetscInt *n_proxies, const PetscIn
 {
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
-  if (n_proxies) *n_proxies = p->sampling.n;
-  if (nodes) *nodes = p->sampling.nodes;
-  if (weights) *weights = p->sampling.weights;
+  if (n_proxies) *n_proxies = p->n;
+  if (nodes) *nodes = p->nodes;
+  if (weights) *weights = p->weights;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -411,10 +275,10 @@ PetscErrorCode ProxyGetPoints(Proxy p, PetscInt *n, const PetscReal *x[], const 
 {
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
-  if (n) *n = p->sampling.n;
+  if (n) *n = p->n;
   if (x) *x = p->x;
   if (normal) *normal = p->normal;
-  if (kappa) *kappa = p->sampling.kappa;
+  if (kappa) *kappa = p->kappa;
   if (area) *area = p->area;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -441,8 +305,8 @@ PetscErrorCode ProxyView(Proxy p, PetscViewer viewer)
   PetscCall(KeysView(ProxyKeys, &p->params, viewer));
   if (p->setup) {
     PetscReal area = 0.0;
-    for (PetscInt i = 0; i < p->sampling.n; i++) area += p->area[i];
-    PetscCall(PetscViewerASCIIPrintf(viewer, "proxies %" PetscInt_FMT ", triangles %" PetscInt_FMT ", smooth patches %" PetscInt_FMT ", area %g m^2, factor %g, sampled %" PetscInt_FMT " times\n", p->sampling.n, p->surface.n_triangles, p->surface.n_patches, (double)area, (double)p->factor, p->n_samplings));
+    for (PetscInt t = 0; t < p->surface.n_triangles; t++) area += p->geometry.area[t];
+    PetscCall(PetscViewerASCIIPrintf(viewer, "proxies %" PetscInt_FMT " of %" PetscInt_FMT " in use, triangles %" PetscInt_FMT ", smooth patches %" PetscInt_FMT ", area %g m^2, factor %g, sampled %" PetscInt_FMT " times\n", p->n, p->sampling.n, p->surface.n_triangles, p->surface.n_patches, (double)area, (double)p->factor, p->n_samplings));
   }
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -460,8 +324,8 @@ PetscErrorCode ProxyDestroy(Proxy *proxy)
   PetscCall(ProxyGeometryDestroy(&p->geometry));
   PetscCall(ProxySamplingDestroy(&p->sampling));
   PetscCall(ProxyContactsDestroy(p));
-  PetscCall(PetscFree(p->reach));
-  PetscCall(PetscFree7(p->points, p->x, p->normal, p->area, p->velocity, p->force, p->centre));
+  PetscCall(ProxyPlaceDestroy(p));
+  PetscCall(ProxyMaskDestroy(p));
   PetscCall(PetscFree(p->node_velocity));
   PetscCall(PetscFree(p->node_weight));
   PetscCall(PetscFree(p->density));

@@ -56,18 +56,12 @@ PetscErrorCode ProxyContactsDestroy(Proxy proxy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* period along an axis, 0 when there is none */
-static inline double Period(const ProxyFluid *fluid, int k)
-{
-  return fluid->periodic & (1u << k) ? fluid->max[k] - fluid->min[k] : 0.0;
-}
-
-/* shift that brings the body's first proxy into the periodic box: images are counted from there */
+/* shift that brings the surface's first node into the periodic box: images are counted from there */
 static void BaseShift(const Proxy p, double base[3])
 {
   for (int k = 0; k < 3; k++) {
-    const double L = Period(&p->fluid, k);
-    base[k] = L > 0.0 ? -L*floor((p->x[k] - p->fluid.min[k])/L) : 0.0;
+    const double L = ProxyPeriod(&p->fluid, k);
+    base[k] = L > 0.0 ? -L*floor((p->geometry.x[3*p->surface.triangles[0] + k] - p->fluid.min[k])/L) : 0.0;
   }
 }
 static inline void ImageShift(const ProxyFluid *fluid, const double base[3], int image, double shift[3])
@@ -76,27 +70,9 @@ static inline void ImageShift(const ProxyFluid *fluid, const double base[3], int
     shift[0] = shift[1] = shift[2] = 0.0;
     return;
   }
-  shift[0] = base[0] + (image%3 - 1)*Period(fluid, 0);
-  shift[1] = base[1] + (image/3%3 - 1)*Period(fluid, 1);
-  shift[2] = base[2] + (image/9 - 1)*Period(fluid, 2);
-}
-
-/* Support of a proxy as a cylinder around its normal: half height and radius [m]. The osculating paraboloid adds up to
-   1/2 kappa R^2 to the height. */
-static void Support(const Proxy p, const ProxyPoint *b, double *half, double *radius)
-{
-  const double h = p->fluid.h;
-
-  if (p->params.kernel != PROXY_KERNEL_HALF_SPACE) {
-    *half   = h;
-    *radius = PetscMax(b->radius[0], b->radius[1]);
-  } else {
-    double extent = 0.0;
-    for (int k = 0; k < 8; k++) extent = PetscMax(extent, b->extent[k]);
-    // an octagon's corners are 8 % farther than its sides
-    *radius = PetscMin(b->radius[0], 1.083*extent + h);
-    *half   = h + fabs(b->offset) + 0.5*(*radius)*(*radius)*sqrt(b->S[0]*b->S[0] + b->S[1]*b->S[1] + b->S[2]*b->S[2] + 2.0*(b->S[3]*b->S[3] + b->S[4]*b->S[4] + b->S[5]*b->S[5]));
-  }
+  shift[0] = base[0] + (image%3 - 1)*ProxyPeriod(fluid, 0);
+  shift[1] = base[1] + (image/3%3 - 1)*ProxyPeriod(fluid, 1);
+  shift[2] = base[2] + (image/9 - 1)*ProxyPeriod(fluid, 2);
 }
 
 static void SetReach(const ProxyPoint *b, double half, double radius, ProxyReach *reach)
@@ -125,9 +101,9 @@ static void SizeCells(const Proxy p, ProxyCells *c)
   double hi[3], n_cells;
 
   for (int k = 0; k < 3; k++) c->lo[k] = PETSC_MAX_REAL, hi[k] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < p->sampling.n; i++) {
+  for (PetscInt i = 0; i < p->n; i++) {
     double half, radius;
-    Support(p, &p->points[i], &half, &radius);
+    ProxySupport(p, &p->points[i], &half, &radius);
     SetReach(&p->points[i], half, radius, &p->reach[i]);
     for (int k = 0; k < 3; k++) {
       const double n = p->points[i].n[k], e = fabs(n)*half + sqrt(PetscMax(0.0, 1.0 - n*n))*radius;
@@ -136,7 +112,7 @@ static void SizeCells(const Proxy p, ProxyCells *c)
     }
   }
   for (int k = 0; k < 3; k++) {
-    if (Period(&p->fluid, k) > 0.0) c->lo[k] = p->fluid.min[k], hi[k] = p->fluid.max[k];
+    if (ProxyPeriod(&p->fluid, k) > 0.0) c->lo[k] = p->fluid.min[k], hi[k] = p->fluid.max[k];
   }
   c->cell = p->fluid.h/1.26;
   do {
@@ -153,15 +129,15 @@ static void VisitCells(const Proxy p, ProxyCells *c, PetscInt *entry)
   double base[3];
 
   BaseShift(p, base);
-  for (PetscInt i = 0; i < p->sampling.n; i++) {
+  for (PetscInt i = 0; i < p->n; i++) {
     const double *n = p->points[i].n, corner = 0.5*sqrt(3.0)*c->cell;
     double        half, radius;
-    Support(p, &p->points[i], &half, &radius);
+    ProxySupport(p, &p->points[i], &half, &radius);
     for (int image = 0; image < 27; image++) {
       double   shift[3], at[3];
       PetscInt lo[3], hi[3];
       int      skip = 0;
-      for (int k = 0, m = image; k < 3; k++, m /= 3) skip |= m%3 != 1 && Period(&p->fluid, k) == 0.0;
+      for (int k = 0, m = image; k < 3; k++, m /= 3) skip |= m%3 != 1 && ProxyPeriod(&p->fluid, k) == 0.0;
       if (skip) continue;
       ImageShift(&p->fluid, base, image, shift);
       for (int k = 0; k < 3; k++) at[k] = p->points[i].x[k] + shift[k];
@@ -273,7 +249,7 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
     for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
     if (OutOfReach(&p->reach[i], r)) continue;
     if (!ProxyPairHalfSpace(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, &touch[n].pair) || !(touch[n].pair.w > 0.0)) continue;
-    const PetscInt patch = p->surface.patch[p->sampling.triangle[i]];
+    const PetscInt patch = p->patch[i];
     while (slot < *n_slots && slots[slot] != patch) slot++;
     if (slot == PROXY_PATCHES) continue;
     if (slot == *n_slots) {
@@ -404,7 +380,7 @@ static int RunChunk(Chunk *c, const Proxy p, PetscInt begin, PetscInt end, const
       const double at = floor((x[3*i + k] - cells->lo[k])/cells->cell);
       if (!(at >= 0.0 && at < cells->dims[k])) {
         // the end of a periodic axis belongs to its last cell
-        if (Period(&p->fluid, k) == 0.0 || !(at >= -1.0 && at <= cells->dims[k])) cell = -1;
+        if (ProxyPeriod(&p->fluid, k) == 0.0 || !(at >= -1.0 && at <= cells->dims[k])) cell = -1;
         else cell = cell*cells->dims[k] + (at < 0.0 ? 0 : cells->dims[k] - 1);
       } else cell = cell*cells->dims[k] + (PetscInt)at;
       if (cell < 0) break;
@@ -483,7 +459,7 @@ PetscErrorCode ProxyFindContacts(Proxy p, PetscInt n, const PetscReal x[], SPHCo
   int            good = 1;
 
   PetscFunctionBegin;
-  if (!p->sampling.n) {
+  if (!p->n) {
     PetscCall(Collect(p, 0, contacts));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -510,7 +486,7 @@ PetscErrorCode ProxyFindContacts(Proxy p, PetscInt n, const PetscReal x[], SPHCo
   }
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the contacts of %s", p->name);
   PetscCall(Collect(p, n_chunks, contacts));
-  contacts->n_proxies = p->sampling.n;
+  contacts->n_proxies = p->n;
   contacts->area      = p->area;
   contacts->velocity  = p->node_velocity ? p->velocity : NULL;
   contacts->force     = p->force;

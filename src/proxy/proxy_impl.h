@@ -74,6 +74,23 @@ typedef struct {
   size_t    n_start, n_entry; /* allocated                                                                */
 } ProxyCells;
 
+/* where fluid is, around a surface: `below` counts the occupied cells below each corner of the grid, so that any box is asked in eight look-ups */
+typedef struct {
+  double    lo[3], cell;
+  PetscInt  dims[3];
+  PetscInt *below;      /* (dims[0] + 1) x (dims[1] + 1) x (dims[2] + 1), first index fastest */
+  size_t    n_below;    /* allocated                                                          */
+} ProxyOccupied;
+
+/* which proxies fluid may touch */
+typedef struct {
+  ProxyOccupied occupied;
+  double        lo[3], hi[3];   /* box of the balls                                                        */
+  double       *ball, *box;     /* sampling.n x 4, x 6: around supports of any shape; around the supports  */
+  PetscBool     has_boxes;      /* all of box[] is that of the surface where it is                         */
+  PetscInt      capacity;
+} ProxyMask;
+
 typedef struct {
   int dummy;
 } ProxyOps;
@@ -93,13 +110,18 @@ struct _p_Proxy {
   ProxyCells    cells;
   PetscBool     cells_valid;
   PetscInt      n_samplings;    /* how often the surface was sampled                                       */
+  ProxyMask     mask;
+  PetscInt      n;              /* proxies in use: those of the sampling that fluid may touch; arrays below are theirs */
   PetscInt      capacity;       /* of the arrays by proxy                                                  */
+  PetscInt     *active, *near; /* n: number in the sampling, ascending; scratch                             */
+  PetscInt     *nodes, *patch;  /* n x 3, n                                                                */
+  PetscReal    *weights, *kappa; /* n x 3, n                                                               */
   ProxyPoint   *points;         /* n                                                                       */
   ProxyReach   *reach;          /* n                                                                       */
   PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
   PetscReal    *centre;         /* n x 3 [m], middle of the triangles that each stands for: always inside its patch */
   PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */
-  PetscReal    *node_weight;    /* n_nodes: nodal share of proxy area [m^2]                                */
+  PetscReal    *node_weight;    /* n_nodes: a third of the triangles around each [m^2]                     */
   SPHContacts   contacts;
   void         *chunks;         /* result buffers of proxy_contacts.c                                      */
   PetscInt      n_chunks, pair_capacity, touched_capacity;
@@ -131,6 +153,30 @@ PetscErrorCode ProxySamplingDestroy(ProxySampling *sampling);
 
 /* proxy_density.c: what the scene says of the density, into proxy->density; `given` is the surface of the scene */
 PetscErrorCode ProxyReadDensity(Proxy proxy, const ProxySurface *given);
+
+/* proxy_place.c: proxies on the surface as `geometry` has it */
+PetscErrorCode ProxyPlaceSampled(Proxy proxy); /* of a new sampling: positions, normals, shapes of all, which ProxyMeasureParts() needs */
+PetscErrorCode ProxyPlaceAll(Proxy proxy);
+/* those that one of n particles at x may touch; `moved`: the surface has, since they were last placed */
+PetscErrorCode ProxyPlaceNear(Proxy proxy, PetscBool moved, PetscInt n, const PetscReal x[]);
+PetscErrorCode ProxyPlaceVelocities(Proxy proxy);
+PetscErrorCode ProxyPlaceDestroy(Proxy proxy);
+
+/* proxy_mask.c */
+/* support of a proxy as a cylinder around its normal: half height and radius [m] */
+void           ProxySupport(const Proxy proxy, const ProxyPoint *point, double *half, double *radius);
+/* Numbers in the sampling of those that may touch one of n particles at x, into active[]: exact when boxes are known and the surface has not
+   moved since, else a superset, and ProxyMaskAfter() tells of the proxies that were placed whose supports reach an occupied cell. */
+PetscErrorCode ProxyMaskBefore(Proxy proxy, PetscBool moved, PetscInt n, const PetscReal x[], PetscInt active[], PetscInt *n_active);
+void           ProxyMaskAfter(const Proxy proxy, PetscBool keep[]);
+void           ProxyMaskBoxes(Proxy proxy); /* of all, which are placed: exact from now on, until the surface moves */
+PetscErrorCode ProxyMaskDestroy(Proxy proxy);
+
+/* period along an axis, 0 when there is none */
+static inline double ProxyPeriod(const ProxyFluid *fluid, int k)
+{
+  return fluid->periodic & (1u << k) ? fluid->max[k] - fluid->min[k] : 0.0;
+}
 
 /* proxy_contacts.c */
 PetscErrorCode ProxyFindContacts(Proxy proxy, PetscInt n, const PetscReal x[], SPHContacts *contacts);

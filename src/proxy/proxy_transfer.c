@@ -98,17 +98,16 @@ static void AddCouple(const Proxy p, const double c[3], const double M[3], doubl
 @*/
 PetscErrorCode ProxyTransfer(Proxy p, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[])
 {
-  const ProxySampling *s = &p->sampling;
-  PetscReal           *f, c[3] = {0, 0, 0}, weight = 0.0, total[3] = {0, 0, 0}, wanted[3] = {0, 0, 0}, M[3], shift[3];
+  PetscReal *f, c[3] = {0, 0, 0}, weight = 0.0, total[3] = {0, 0, 0}, wanted[3] = {0, 0, 0}, M[3], shift[3];
 
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
-  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!p->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(3*p->surface.n_nodes, &f));
-  for (PetscInt b = 0; b < s->n; b++) {
+  for (PetscInt b = 0; b < p->n; b++) {
     double m[3];
     for (int i = 0; i < 3; i++) {
-      for (int k = 0; k < 3; k++) f[3*s->nodes[3*b + i] + k] += s->weights[3*b + i]*force[3*b + k];
+      for (int k = 0; k < 3; k++) f[3*p->nodes[3*b + i] + k] += p->weights[3*b + i]*force[3*b + k];
     }
     Cross3(&p->x[3*b], &force[3*b], m);
     for (int k = 0; k < 3; k++) total[k] += force[3*b + k], wanted[k] += m[k];
