@@ -1,5 +1,6 @@
 /* coupler_results.c - what a run writes: time series of fluid, bodies and proxies, ledger.csv, probes.csv, summary.json. */
 #include "coupler_results.h"
+#include "coupler_fields.h"
 #include "backend.h"
 #include <petscviewer.h>
 #include <sys/resource.h>
@@ -82,30 +83,57 @@ static PetscErrorCode WriteLedger(Coupler c, CouplerResults *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteBody(Coupler c, CouplerResults *r, PetscInt k)
+/* fields of the water on a surface, behind those that it has anyway; the number of all */
+static PetscInt AppendFields(const CouplerFields *water, PetscInt n, OutputField fields[])
 {
-  CouplerSurface *s = &c->surface[k];
+  fields[n++] = (OutputField){"pressure", "Pa", 1, water->pressure};
+  fields[n++] = (OutputField){"water", "1", 1, water->water};
+  fields[n++] = (OutputField){"water_pressure", "Pa", 1, water->water_pressure};
+  fields[n++] = (OutputField){"water_velocity", "m/s", 3, water->water_velocity};
+  return n;
+}
+
+static PetscErrorCode WriteNodes(Coupler c, CouplerResults *r, PetscInt k, const CouplerFields *water)
+{
+  CouplerSurface  *s = &c->surface[k];
+  const PetscReal *x, *v, *u;
+  Vec              U, V, F;
 
   PetscFunctionBegin;
-  if (s->tled) {
-    const PetscReal *x, *v, *u;
-    Vec              U, V, F;
+  if (!s->tled) {
+    OutputField fields[4];
 
-    PetscCall(TLEDGetPositions(s->tled, &x, &v));
-    PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
-    PetscCall(VecGetArrayRead(U, &u));
-    const OutputField fields[] = {{"displacement", "m", 3, u}, {"velocity", "m/s", 3, v}, {"force", "N", 3, s->force}};
-    ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, x, 3, fields));
-    PetscCall(VecRestoreArrayRead(U, &u));
-  } else if (s->moves || !r->n_series) ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, s->x, 0, NULL));
-  if (r->proxies[k]) {
-    const PetscReal *x, *normal, *kappa, *area;
-    PetscInt         n;
-
-    PetscCall(ProxyGetPoints(s->proxy, &n, &x, &normal, &kappa, &area));
-    const OutputField fields[] = {{"normal", "1", 3, normal}, {"kappa", "1", 1, kappa}, {"area", "m^2", 1, area}};
-    ByCall(SeriesWrite(r->proxies[k], c->time, n, x, 3, fields));
+    if (!s->proxy && !s->moves && r->n_series) PetscFunctionReturn(PETSC_SUCCESS);
+    ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, s->x, s->proxy ? AppendFields(water, 0, fields) : 0, fields));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(TLEDGetPositions(s->tled, &x, &v));
+  PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
+  PetscCall(VecGetArrayRead(U, &u));
+  OutputField fields[7] = {{"displacement", "m", 3, u}, {"velocity", "m/s", 3, v}, {"force", "N", 3, s->force}};
+  ByCall(SeriesWrite(r->body[k], c->time, s->n_nodes, x, s->proxy ? AppendFields(water, 3, fields) : 3, fields));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteBody(Coupler c, CouplerResults *r, PetscInt k)
+{
+  const PetscReal *x, *normal, *kappa, *area;
+  CouplerFields    at_proxies, at_nodes;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  if (!r->proxies[k]) {
+    ByCall(WriteNodes(c, r, k, NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CouplerFieldsCreate(c, k, &at_proxies, &at_nodes));
+  ByCall(WriteNodes(c, r, k, &at_nodes));
+  PetscCall(ProxyGetPoints(c->surface[k].proxy, &n, &x, &normal, &kappa, &area));
+  OutputField fields[7] = {{"normal", "1", 3, normal}, {"kappa", "1", 1, kappa}, {"area", "m^2", 1, area}};
+  ByCall(SeriesWrite(r->proxies[k], c->time, n, x, AppendFields(&at_proxies, 3, fields), fields));
+  PetscCall(CouplerFieldsDestroy(&at_proxies));
+  PetscCall(CouplerFieldsDestroy(&at_nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

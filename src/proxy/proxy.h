@@ -58,6 +58,11 @@ BY_EXTERN PetscErrorCode ProxyGetInterpolation(Proxy proxy, PetscInt *n_proxies,
    that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces at the proxies) */
 BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[]);
 
+/* fields at the nodes of the surface, n_nodes x n, from n values (at most PROXY_FIELDS) at each proxy that count by weight >= 0, its area for example;
+   0 where no proxy is near */
+#define PROXY_FIELDS 8
+BY_EXTERN PetscErrorCode ProxyToNodes(Proxy proxy, PetscInt n, const PetscReal value[], const PetscReal weight[], PetscReal node_value[]);
+
 /* restart: positions [m], n_nodes x 3, at which the surface was last sampled; setting them samples it there again, to the same bits.
    After ProxySetSampling call ProxyUpdate with the current positions. */
 BY_EXTERN PetscErrorCode ProxyGetSampling(Proxy proxy, const PetscReal *x[]);

@@ -1,5 +1,6 @@
-/* proxy_transfer.c - forces on proxies to the nodes of the surface (method 5.1). */
+/* proxy_transfer.c - forces on proxies to the nodes of the surface (method 5.1), and what proxies know as fields at the nodes. */
 #include "proxy/proxy_impl.h"
+#include "proxy/proxy_grid.h"
 
 /* Pseudo-inverse times M of a symmetric positive 3x3 matrix: theta = A^+ M. Eigenvalues below 1e-10 of the largest count as zero (all
    nodes on a line: no moment about it can be made). Jacobi rotations. */
@@ -132,5 +133,140 @@ PetscErrorCode ProxyTransfer(Proxy p, const PetscReal force[], const PetscReal m
   }
   for (PetscInt i = 0; i < 3*p->surface.n_nodes; i++) node_force[i] += f[i];
   PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* unit normals of the surface's nodes where they are now, means of the triangles by area; 0 for nodes that are not on it */
+static void NodeNormals(const Proxy p, PetscReal normal[])
+{
+  for (PetscInt i = 0; i < 3*p->surface.n_nodes; i++) normal[i] = 0.0;
+  for (PetscInt t = 0; t < p->surface.n_triangles; t++) {
+    for (int c = 0; c < 3; c++) {
+      for (int k = 0; k < 3; k++) normal[3*p->surface.triangles[3*t + c] + k] += p->geometry.area[t]*p->geometry.normal[3*t + k];
+    }
+  }
+  for (PetscInt a = 0; a < p->surface.n_nodes; a++) {
+    const double length = Norm3(&normal[3*a]);
+    for (int k = 0; k < 3 && length > 0.0; k++) normal[3*a + k] /= length;
+  }
+}
+
+/* Radius of a node's view of the proxies over that of their supports: 1.4 spacings, so that it sees some wherever thinning has left the largest
+   gap, and little beyond its neighbours */
+#define NODE_REACH 0.7
+
+/* what a node has gathered from the proxies around it: sums of weights, of weights times distances d = x_b - x_a, of these times values */
+typedef struct {
+  double weight, first[3], second[9], value[PROXY_FIELDS], slope[3*PROXY_FIELDS], low[PROXY_FIELDS], high[PROXY_FIELDS];
+} NodeSums;
+
+static void Gather(PetscInt n, double w, const double d[3], const PetscReal value[], NodeSums *s)
+{
+  s->weight += w;
+  for (int i = 0; i < 3; i++) {
+    s->first[i] += w*d[i];
+    for (int j = 0; j < 3; j++) s->second[3*i + j] += w*d[i]*d[j];
+  }
+  for (PetscInt m = 0; m < n; m++) {
+    s->value[m] += w*value[m];
+    for (int i = 0; i < 3; i++) s->slope[3*m + i] += w*value[m]*d[i];
+    s->low[m]  = PetscMin(s->low[m], value[m]);
+    s->high[m] = PetscMax(s->high[m], value[m]);
+  }
+}
+
+/* The constant c of the fit min sum w (v_b - c - g.d)^2 + eps R^2 |g|^2 sum w, kept within the range of the values. The small term keeps the
+   slope along the normal of a flat surface at zero. */
+static void Fit(PetscInt n, double R, const NodeSums *s, PetscReal value[])
+{
+  const double eps = 0.01;
+  double       A[9], inverse[9] = {0}, mean[3];
+
+  for (int i = 0; i < 3; i++) mean[i] = s->first[i]/s->weight;
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) A[3*i + j] = s->second[3*i + j]/s->weight - mean[i]*mean[j] + (i == j ? eps*R*R : 0.0);
+  }
+  (void)Invert3(A, inverse);
+  for (PetscInt m = 0; m < n; m++) {
+    double       rhs[3], g[3];
+    const double v = s->value[m]/s->weight;
+    for (int i = 0; i < 3; i++) rhs[i] = s->slope[3*m + i]/s->weight - v*mean[i];
+    Mul3(inverse, rhs, g);
+    value[m] = PetscMin(s->high[m], PetscMax(s->low[m], v - Dot3(mean, g)));
+  }
+}
+
+/* a node's sums over the proxies in the cells within the largest radius of a support */
+static void GatherNode(const Proxy p, const PointGrid *grid, double reach, const double x[3], const double normal[3], PetscInt n, const PetscReal value[],
+                       const PetscReal weight[], NodeSums *sums)
+{
+  const double low[3] = {x[0] - reach, x[1] - reach, x[2] - reach}, high[3] = {x[0] + reach, x[1] + reach, x[2] + reach};
+  PetscInt     lo[3], hi[3];
+
+  (void)PointGridIndex(grid, low, lo);
+  (void)PointGridIndex(grid, high, hi);
+  *sums = (NodeSums){0};
+  for (PetscInt m = 0; m < n; m++) sums->low[m] = PETSC_MAX_REAL, sums->high[m] = -PETSC_MAX_REAL;
+  for (PetscInt k = lo[2]; k <= hi[2]; k++) {
+    for (PetscInt j = lo[1]; j <= hi[1]; j++) {
+      for (PetscInt i = lo[0]; i <= hi[0]; i++) {
+        for (PetscInt b = grid->head[(k*grid->dims[1] + j)*grid->dims[0] + i]; b >= 0; b = grid->next[b]) {
+          const double facing = Dot3(normal, &p->normal[3*b]);
+          double       d[3], unused;
+          Sub3(&p->x[3*b], x, d);
+          const double w = facing > 0.0 ? facing*weight[b]*ProxyKernel2D(Norm3(d), NODE_REACH*p->points[b].radius[0], &unused) : 0.0;
+          if (w > 0.0) Gather(n, w, d, &value[n*b], sums);
+        }
+      }
+    }
+  }
+}
+
+/*@
+  ProxyToNodes - fields at the nodes of the surface from values at its proxies
+
+  Input Parameters:
++ proxy  - the proxies where they are now
+. n      - values a proxy, at most PROXY_FIELDS
+. value  - n_proxies x n
+- weight - n_proxies, >= 0: how much each counts, its area for a pressure
+
+  Output Parameter:
+. node_value - n_nodes x n; 0 at nodes that no proxy of positive weight is near, and at inner ones
+
+  Equation:
+  The value at x_a of the linear function that fits those of the proxies b best, with weights weight_b W2(|x_a - x_b|, 0.7 R_b) max(0, n_a . n_b): W2
+  a cubic spline in two dimensions (ProxyKernel2D()), R_b the tangential radius of the support, n outward normals, so that the two sides of a sheet
+  keep apart. A plain mean would flatten the field of a ball whose radius is that of the supports. It is kept within the range of the values.
+
+  Cost: O(nodes).  Tests: tests/unit/proxy/test_transfer.c
+
+.seealso: ProxyTransfer(), ProxyGetPoints()
+@*/
+PetscErrorCode ProxyToNodes(Proxy p, PetscInt n, const PetscReal value[], const PetscReal weight[], PetscReal node_value[])
+{
+  const PetscInt n_proxies = p->sampling.n, n_nodes = p->surface.n_nodes;
+  PetscReal     *normal, reach = 0.0;
+  PointGrid      grid;
+
+  PetscFunctionBegin;
+  PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
+  PetscCheck(n > 0 && n <= PROXY_FIELDS, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " values a proxy, at most %d", n, PROXY_FIELDS);
+  PetscCall(PetscArrayzero(node_value, n*n_nodes));
+  if (!n_proxies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(3*n_nodes, &normal));
+  NodeNormals(p, normal);
+  for (PetscInt b = 0; b < n_proxies; b++) reach = PetscMax(reach, NODE_REACH*p->points[b].radius[0]);
+  PetscCall(PointGridCreate(n_proxies, p->x, reach, n_proxies, &grid));
+  for (PetscInt b = n_proxies - 1; b >= 0; b--) PointGridAdd(&grid, b, &p->x[3*b]);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (PetscInt a = 0; a < n_nodes; a++) {
+    NodeSums sums;
+    if (Dot3(&normal[3*a], &normal[3*a]) == 0.0) continue;
+    GatherNode(p, &grid, reach, &p->geometry.x[3*a], &normal[3*a], n, value, weight, &sums);
+    if (sums.weight > 0.0) Fit(n, reach, &sums, &node_value[n*a]);
+  }
+  PetscCall(PointGridDestroy(&grid));
+  PetscCall(PetscFree(normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
