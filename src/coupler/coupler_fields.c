@@ -77,8 +77,8 @@ static PetscErrorCode AtNodes(Proxy proxy, PetscInt n_nodes, const CouplerFields
   PetscFunctionBegin;
   PetscCall(ProxyGetPoints(proxy, &n, NULL, NULL, NULL, &area));
   PetscCall(PetscMalloc3(4 * n, &value, n, &weight, 4 * n_nodes, &node));
-  PetscCall(ProxyToNodes(proxy, 1, from->pressure, area, fields->pressure));
-  PetscCall(ProxyToNodes(proxy, 1, from->water, area, fields->water));
+  PetscCall(ProxyToNodes(proxy, 1, from->pressure, NULL, fields->pressure));
+  PetscCall(ProxyToNodes(proxy, 1, from->water, NULL, fields->water));
   for (PetscInt b = 0; b < n; b++) {
     weight[b]    = area[b] * from->water[b];
     value[4 * b] = from->water_pressure[b];

@@ -58,8 +58,8 @@ BY_EXTERN PetscErrorCode ProxyGetInterpolation(Proxy proxy, PetscInt *n_proxies,
    that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces at the proxies) */
 BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[]);
 
-/* fields at the nodes of the surface, n_nodes x n, from n values (at most PROXY_FIELDS) at each proxy that count by weight >= 0, its area for example;
-   0 where no proxy is near */
+/* fields at the nodes of the surface, n_nodes x n, from n values (at most PROXY_FIELDS) at each proxy that count by weight >= 0 (NULL: by area, and as 0
+   where no fluid is near); 0 where no proxy is near */
 #define PROXY_FIELDS 8
 BY_EXTERN PetscErrorCode ProxyToNodes(Proxy proxy, PetscInt n, const PetscReal value[], const PetscReal weight[], PetscReal node_value[]);
 

@@ -196,26 +196,70 @@ static void Fit(PetscInt n, double R, const NodeSums *s, PetscReal value[])
   }
 }
 
-/* a node's sums over the proxies in the cells within the largest radius of a support */
-static void GatherNode(const Proxy p, const PointGrid *grid, double reach, const double x[3], const double normal[3], PetscInt n, const PetscReal value[],
-                       const PetscReal weight[], NodeSums *sums)
-{
-  const double low[3] = {x[0] - reach, x[1] - reach, x[2] - reach}, high[3] = {x[0] + reach, x[1] + reach, x[2] + reach};
-  PetscInt     lo[3], hi[3];
+/* what nodes see of the sampling: those in use, and with weight also the others, which have no water near and values of zero */
+typedef struct {
+  PetscInt   n, *use; /* number in use, -1 = not */
+  PetscReal *x, *normal, *radius, *weight, reach;
+  PointGrid  grid;
+} NodeView;
 
-  (void)PointGridIndex(grid, low, lo);
-  (void)PointGridIndex(grid, high, hi);
+static PetscErrorCode NodeViewCreate(const Proxy p, const PetscReal weight[], NodeView *view)
+{
+  const ProxySampling *s = &p->sampling;
+
+  PetscFunctionBegin;
+  view->n     = s->n;
+  view->reach = 0.0;
+  PetscCall(PetscMalloc5(s->n, &view->use, 3*s->n, &view->x, 3*s->n, &view->normal, s->n, &view->radius, s->n, &view->weight));
+  for (PetscInt i = 0; i < s->n; i++) {
+    view->use[i]    = -1;
+    view->weight[i] = 0.0;
+    view->radius[i] = NODE_REACH*p->fluid.h/s->kappa[i];
+    view->reach     = PetscMax(view->reach, view->radius[i]);
+    for (PetscInt k = s->part_start[i]; k < s->part_start[i + 1] && !weight; k++) view->weight[i] += s->part[k]*p->geometry.area[s->part_triangle[k]];
+    for (int k = 0; k < 3; k++) {
+      view->normal[3*i + k] = p->geometry.normal[3*s->triangle[i] + k];
+      view->x[3*i + k]      = 0.0;
+      for (int c = 0; c < 3; c++) view->x[3*i + k] += s->weights[3*i + c]*p->geometry.x[3*s->nodes[3*i + c] + k];
+    }
+  }
+  for (PetscInt b = 0; b < p->n; b++) {
+    view->use[p->active[b]]    = b;
+    view->weight[p->active[b]] = weight ? weight[b] : p->area[b];
+  }
+  PetscCall(PointGridCreate(s->n, view->x, view->reach, s->n, &view->grid));
+  for (PetscInt i = s->n - 1; i >= 0; i--) PointGridAdd(&view->grid, i, &view->x[3*i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode NodeViewDestroy(NodeView *view)
+{
+  PetscFunctionBegin;
+  PetscCall(PointGridDestroy(&view->grid));
+  PetscCall(PetscFree5(view->use, view->x, view->normal, view->radius, view->weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a node's sums over the proxies in the cells within the largest radius */
+static void GatherNode(const NodeView *view, const double x[3], const double normal[3], PetscInt n, const PetscReal value[], NodeSums *sums)
+{
+  static const PetscReal none[PROXY_FIELDS] = {0};
+  const double           r = view->reach, low[3] = {x[0] - r, x[1] - r, x[2] - r}, high[3] = {x[0] + r, x[1] + r, x[2] + r};
+  PetscInt               lo[3], hi[3];
+
+  (void)PointGridIndex(&view->grid, low, lo);
+  (void)PointGridIndex(&view->grid, high, hi);
   *sums = (NodeSums){0};
   for (PetscInt m = 0; m < n; m++) sums->low[m] = PETSC_MAX_REAL, sums->high[m] = -PETSC_MAX_REAL;
   for (PetscInt k = lo[2]; k <= hi[2]; k++) {
     for (PetscInt j = lo[1]; j <= hi[1]; j++) {
       for (PetscInt i = lo[0]; i <= hi[0]; i++) {
-        for (PetscInt b = grid->head[(k*grid->dims[1] + j)*grid->dims[0] + i]; b >= 0; b = grid->next[b]) {
-          const double facing = Dot3(normal, &p->normal[3*b]);
+        for (PetscInt b = view->grid.head[(k*view->grid.dims[1] + j)*view->grid.dims[0] + i]; b >= 0; b = view->grid.next[b]) {
+          const double facing = Dot3(normal, &view->normal[3*b]);
           double       d[3], unused;
-          Sub3(&p->x[3*b], x, d);
-          const double w = facing > 0.0 ? facing*weight[b]*ProxyKernel2D(Norm3(d), NODE_REACH*p->points[b].radius[0], &unused) : 0.0;
-          if (w > 0.0) Gather(n, w, d, &value[n*b], sums);
+          Sub3(&view->x[3*b], x, d);
+          const double w = facing > 0.0 ? facing*view->weight[b]*ProxyKernel2D(Norm3(d), view->radius[b], &unused) : 0.0;
+          if (w > 0.0) Gather(n, w, d, view->use[b] < 0 ? none : &value[n*view->use[b]], sums);
         }
       }
     }
@@ -229,44 +273,42 @@ static void GatherNode(const Proxy p, const PointGrid *grid, double reach, const
 + proxy  - the proxies where they are now
 . n      - values a proxy, at most PROXY_FIELDS
 . value  - n_proxies x n
-- weight - n_proxies, >= 0: how much each counts, its area for a pressure
+- weight - n_proxies, >= 0: how much each counts; NULL: its area, and where no fluid is near and no proxies are in use values are 0
 
   Output Parameter:
 . node_value - n_nodes x n; 0 at nodes that no proxy of positive weight is near, and at inner ones
 
   Equation:
   The value at x_a of the linear function that fits those of the proxies b best, with weights weight_b W2(|x_a - x_b|, 0.7 R_b) max(0, n_a . n_b): W2
-  a cubic spline in two dimensions (ProxyKernel2D()), R_b the tangential radius of the support, n outward normals, so that the two sides of a sheet
-  keep apart. A plain mean would flatten the field of a ball whose radius is that of the supports. It is kept within the range of the values.
+  a cubic spline in two dimensions (ProxyKernel2D()), R_b = h/kappa-bar, n outward normals, so that the two sides of a sheet keep apart. A plain
+  mean would flatten the field of a ball whose radius is that of the supports. It is kept within the range of the values.
 
-  Cost: O(nodes).  Tests: tests/unit/proxy/test_transfer.c
+  Cost: O(nodes + proxies).  Tests: tests/unit/proxy/test_transfer.c
 
 .seealso: ProxyTransfer(), ProxyGetPoints()
 @*/
 PetscErrorCode ProxyToNodes(Proxy p, PetscInt n, const PetscReal value[], const PetscReal weight[], PetscReal node_value[])
 {
-  const PetscInt n_proxies = p->sampling.n, n_nodes = p->surface.n_nodes;
-  PetscReal     *normal, reach = 0.0;
-  PointGrid      grid;
+  const PetscInt n_nodes = p->surface.n_nodes;
+  PetscReal     *normal;
+  NodeView       view;
 
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
   PetscCheck(n > 0 && n <= PROXY_FIELDS, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " values a proxy, at most %d", n, PROXY_FIELDS);
   PetscCall(PetscArrayzero(node_value, n*n_nodes));
-  if (!n_proxies) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!p->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(3*n_nodes, &normal));
   NodeNormals(p, normal);
-  for (PetscInt b = 0; b < n_proxies; b++) reach = PetscMax(reach, NODE_REACH*p->points[b].radius[0]);
-  PetscCall(PointGridCreate(n_proxies, p->x, reach, n_proxies, &grid));
-  for (PetscInt b = n_proxies - 1; b >= 0; b--) PointGridAdd(&grid, b, &p->x[3*b]);
+  PetscCall(NodeViewCreate(p, weight, &view));
 #pragma omp parallel for schedule(dynamic, 64)
   for (PetscInt a = 0; a < n_nodes; a++) {
     NodeSums sums;
     if (Dot3(&normal[3*a], &normal[3*a]) == 0.0) continue;
-    GatherNode(p, &grid, reach, &p->geometry.x[3*a], &normal[3*a], n, value, weight, &sums);
-    if (sums.weight > 0.0) Fit(n, reach, &sums, &node_value[n*a]);
+    GatherNode(&view, &p->geometry.x[3*a], &normal[3*a], n, value, &sums);
+    if (sums.weight > 0.0) Fit(n, view.reach, &sums, &node_value[n*a]);
   }
-  PetscCall(PointGridDestroy(&grid));
+  PetscCall(NodeViewDestroy(&view));
   PetscCall(PetscFree(normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
