@@ -7,9 +7,9 @@
 #include <fcntl.h>
 #include <petsctime.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -62,16 +62,14 @@ static PetscErrorCode Environment(const char threads[], char **text, char ***wor
 }
 
 /* start this program with a command for a point, output to `fd`. In a process group of its own, so that Ctrl-C reaches the sweep alone, which
-   hands it on once. */
+   hands it on once; when the sweep is killed its runs save their state and end. */
 static PetscErrorCode Spawn(Sweep *s, SweepPoint *p, const char command[], PetscBool resume, int fd)
 {
   char        program[PETSC_MAX_PATH_LEN] = "", threads[64], **words, *text, **environment;
   char        directory_key[] = "-run_directory", resume_key[] = "-resume";
-  int         n = 0, failed;
+  int         n = 0;
   const char *inherited = getenv("OMP_NUM_THREADS");
   const long  all       = inherited && atol(inherited) > 0 ? atol(inherited) : sysconf(_SC_NPROCESSORS_ONLN);
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t          attributes;
 
   PetscFunctionBegin;
   PetscCheck(readlink("/proc/self/exe", program, sizeof(program) - 1) > 0, PETSC_COMM_SELF, PETSC_ERR_SYS, "/proc/self/exe: %s", strerror(errno));
@@ -94,15 +92,15 @@ static PetscErrorCode Spawn(Sweep *s, SweepPoint *p, const char command[], Petsc
   words[n] = NULL;
   PetscCall(PetscSNPrintf(threads, sizeof(threads), "OMP_NUM_THREADS=%ld", PetscMax(1L, all / (long)s->params.jobs)));
   PetscCall(Environment(s->params.jobs > 1 ? threads : NULL, &text, &environment));
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, fd, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, fd, STDERR_FILENO);
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  failed = posix_spawn(&p->pid, program, &actions, &attributes, words, environment);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_SYS, "%s cannot be started: %s", program, strerror(failed));
+  fflush(NULL);
+  p->pid = fork();
+  if (!p->pid) {
+    (void)setpgid(0, 0);
+    (void)prctl(PR_SET_PDEATHSIG, SIGINT);
+    if (dup2(fd, STDOUT_FILENO) >= 0 && dup2(fd, STDERR_FILENO) >= 0) execve(program, words, environment);
+    _exit(BY_EXIT_FAILURE);
+  }
+  PetscCheck(p->pid > 0, PETSC_COMM_SELF, PETSC_ERR_SYS, "%s cannot be started: %s", program, strerror(errno));
   p->start = Now();
   PetscCall(PetscFree(words));
   PetscCall(PetscFree(text));

@@ -21,6 +21,7 @@ byssus_script(formulas byssus_program)
 byssus_script(program byssus_program)
 byssus_script(verify byssus_program)
 byssus_script(bad_input byssus_program)
+byssus_script(sweep byssus_program)
 byssus_test(unit/scene/test_schema base sph tled proxy coupler)
 byssus_test(fuzz/test_scene_mutations base)
 
