@@ -99,6 +99,29 @@ PetscErrorCode CouplerAddObstacle(Coupler coupler, const char name[], Proxy prox
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* what comes after an obstacle at rest, and every body, may come to lie on it */
+PetscErrorCode CouplerAddNeighbours(Coupler c)
+{
+  SPHParams *params;
+
+  PetscFunctionBegin;
+  PetscCall(SPHGetParams(c->sph, &params));
+  for (PetscInt j = c->n_bodies; j < c->n_surfaces; j++) {
+    CouplerSurface *o = &c->surface[j];
+    PetscReal       lo[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[3] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL};
+
+    if (o->moves || o->index || c->n_surfaces == 1) continue;
+    PetscCall(SurfaceIndexCreate(o->n_nodes, o->x, o->n_triangles, o->triangles, params->spacing, &o->index));
+    for (PetscInt i = 0; i < 3 * o->n_nodes; i++) {
+      lo[i % 3] = PetscMin(lo[i % 3], o->x[i]);
+      hi[i % 3] = PetscMax(hi[i % 3], o->x[i]);
+    }
+    for (PetscInt k = 0; k < c->n_surfaces; k++)
+      if (c->surface[k].proxy && (k < c->n_bodies || k > j)) PetscCall(ProxyAddNeighbour(c->surface[k].proxy, o->index, lo, hi));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   CouplerSetUp - fix the coupling scheme and the first contacts; the parts must be set up
 
@@ -125,6 +148,7 @@ PetscErrorCode CouplerSetUp(Coupler c)
   PetscCall(SPHGetParams(c->sph, &params));
   PetscCall(SPHGetMass(c->sph, &c->mass));
   c->rest_density = params->density;
+  PetscCall(CouplerAddNeighbours(c));
   PetscCall(SPHGetSolver(c->sph, &solver, NULL));
   PetscCall(PetscStrcmp(solver, "isph", &isph));
   for (PetscInt k = 0; k < c->n_bodies && isph && !params->free_surface; k++) {
@@ -305,6 +329,7 @@ PetscErrorCode CouplerDestroy(Coupler *coupler)
     CouplerSurface *s = &c->surface[k];
 
     PetscCall(ProxyDestroy(&s->proxy));
+    PetscCall(SurfaceIndexDestroy(&s->index));
     PetscCall(TLEDDestroy(&s->tled));
     PetscCall(CouplerResponseDestroy(&s->response));
     PetscCall(PetscFree2(s->x, s->triangles));

@@ -35,6 +35,7 @@ typedef struct {
   PetscReal       power;         /* [W] of the fluid on an obstacle that moves, last step                  */
   PetscInt       *triangles;     /* of an obstacle                                                         */
   PetscInt        n_triangles;
+  SurfaceIndex    index;         /* of an obstacle at rest, on which others may lie                         */
   PetscReal      *force;         /* n x 3 [N] forces of the fluid on the nodes, last step                  */
   PetscReal      *start;         /* n x 3 [m] displacement at the start of the step                        */
   PetscReal      *mean_velocity; /* n x 3 [m/s] of the surface over the step                               */
@@ -122,6 +123,7 @@ PETSC_INTERN PetscErrorCode CouplerNumberInterface(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerCoupledStep(Coupler coupler, PetscReal dt);
 /* coupler.c */
 PETSC_INTERN PetscErrorCode CouplerUpdateContacts(Coupler coupler);
+PETSC_INTERN PetscErrorCode CouplerAddNeighbours(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerTimer(Coupler coupler, CouplerPhase phase);
 /* coupler_exchange.c */
 PETSC_INTERN PetscErrorCode CouplerPredictWall(Coupler coupler, CouplerSurface *s, PetscReal dt);

@@ -402,6 +402,7 @@ PetscErrorCode CouplerSetFromOptions(Coupler c)
   }
   if (has_fluid) ByCall(CouplerMoveDomain(c, &domain));
   if (InputErrorCount()) PetscFunctionReturn(BY_ERR_INPUT);
+  if (has_fluid) PetscCall(CouplerAddNeighbours(c));
   if (has_fluid) ByCall(CouplerBuildFluid(c, &domain));
   ByCall(CouplerAddProbes(c, &top.probes));
   PetscFunctionReturn(PETSC_SUCCESS);

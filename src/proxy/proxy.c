@@ -158,6 +158,7 @@ PetscErrorCode ProxySetUp(Proxy p)
   UpdateGeometry(p);
   PetscCall(Sample(p));
   PetscCall(ProxyPlaceAll(p));
+  ProxyExpose(p);
   p->setup = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -209,10 +210,12 @@ PetscErrorCode ProxyUpdate(Proxy p, const PetscReal x[], const PetscReal v[])
   if (p->sph) {
     const PetscReal *at;
     PetscInt         n;
+    PetscCall(SPHGetPlanes(p->sph, p->fluid.plane));
     PetscCall(SPHGetSize(p->sph, &n));
     PetscCall(SPHGetState(p->sph, &at, NULL, NULL, NULL, NULL));
     PetscCall(ProxyPlaceNear(p, (PetscBool)!same, n, at));
   } else if (!same) PetscCall(ProxyPlaceAll(p));
+  ProxyExpose(p);
   PetscCall(ProxySetVelocity(p, v));
   PetscCall(PetscLogEventEnd(EventUpdate, p, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -326,6 +329,7 @@ PetscErrorCode ProxyDestroy(Proxy *proxy)
   PetscCall(ProxyContactsDestroy(p));
   PetscCall(ProxyPlaceDestroy(p));
   PetscCall(ProxyMaskDestroy(p));
+  PetscCall(PetscFree(p->neighbour));
   PetscCall(PetscFree(p->node_velocity));
   PetscCall(PetscFree(p->node_weight));
   PetscCall(PetscFree(p->density));

@@ -3,6 +3,7 @@
 #define BY_PROXY_H
 
 #include "keys.h"
+#include "surface.h"
 #include "sph/sph.h"
 
 typedef struct _p_Proxy *Proxy;
@@ -36,6 +37,8 @@ BY_EXTERN PetscErrorCode ProxyGetParams(Proxy proxy, ProxyParams **params);
 BY_EXTERN PetscErrorCode ProxySetSurface(Proxy proxy, PetscInt n_nodes, const PetscReal X[], PetscInt n_triangles, const PetscInt triangles[]);
 /* density of one's own: kappa-bar of every node, > 0 (spacing h/(2 kappa-bar)), in place of curvature; copied; before SetUp */
 BY_EXTERN PetscErrorCode ProxySetDensity(Proxy proxy, const PetscReal kappa[]);
+/* obstacles on which the surface may come to lie: faces that do stop acting, as those on planar walls */
+BY_EXTERN PetscErrorCode ProxyAddNeighbour(Proxy proxy, SurfaceIndex index, const PetscReal min[3], const PetscReal max[3]);
 /* support radius h [m], spacing dx [m], kernel of the fluid; periodic box of the domain for minimal images */
 BY_EXTERN PetscErrorCode ProxySetFluid(Proxy proxy, SPH sph);
 BY_EXTERN PetscErrorCode ProxySetFromOptions(Proxy proxy);

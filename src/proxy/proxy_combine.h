@@ -30,6 +30,7 @@ typedef struct {
   double n[3], grad_n[9];            /* mean normal, not normalised                      */
   double foot[3];                    /* [m], mean centre of the surface, from the particle */
   double coverage, grad_coverage[3]; /* sum of A w: 1 inside a patch, 1/2 on its border  */
+  double exposed, grad_exposed[3];   /* part of the patch that acts, 0 where it lies on a wall */
   int    open;                       /* the patch has an open border                     */
 } ProxyPatchValue;
 
@@ -344,6 +345,36 @@ BY_HD double ProxyBodyPhi(int n, double h, double s, const ProxyPatchValue patch
     for (int k = 0; k < 3; k++) grad[p][k] = total.y.g[3*p + k];
   }
   return total.y.v;
+}
+
+/* The same when patches lie on walls: in full they are not there at all. Between, the value goes from one to the other in proportion, patches
+   leaving in the order of their exposure E: phi = sum_k (E_k - E_k+1) phi(patches 1 .. k), E_1 >= E_2 >= ... (Lovasz's extension of the
+   set function). Continuous; the gradient is exact but where two exposures cross. */
+BY_HD double ProxyExposedPhi(int n, double h, double s, const ProxyPatchValue patch[], double grad[][3])
+{
+  ProxyPatchValue some[PROXY_PATCHES];
+  double          part[PROXY_PATCHES][3], phi = 0.0, before = 0.0;
+  int             order[PROXY_PATCHES];
+
+  for (int p = 0; p < n; p++) {
+    int at = p;
+    for (; at > 0 && patch[order[at - 1]].exposed < patch[p].exposed; at--) order[at] = order[at - 1];
+    order[at] = p;
+    for (int k = 0; k < 3; k++) grad[p][k] = 0.0;
+  }
+  for (int m = 1; m <= n && patch[order[m - 1]].exposed > 0.0; m++) {
+    const double E = patch[order[m - 1]].exposed, next = m < n ? patch[order[m]].exposed : 0.0;
+    some[m - 1] = patch[order[m - 1]];
+    if (E == next && E == 1.0) continue; // all of the fully exposed come in together
+    const double value = ProxyBodyPhi(m, h, s, some, part);
+    phi += (E - next)*value;
+    for (int q = 0; q < m; q++) {
+      for (int k = 0; k < 3; k++) grad[order[q]][k] += (E - next)*part[q][k];
+    }
+    for (int k = 0; k < 3 && E < 1.0; k++) grad[order[m - 1]][k] += (value - before)*patch[order[m - 1]].grad_exposed[k];
+    before = value;
+  }
+  return phi;
 }
 
 #endif

@@ -190,7 +190,7 @@ static PetscErrorCode BuildCells(Proxy p)
 /* Shepard means of the pairs in one slot (method 4.4) */
 static void PatchMeans(const Proxy p, const double x[3], const double base[3], const Touch touch[], int n, int slot, ProxyPatchValue *v)
 {
-  double D = 0.0, gD[3] = {0}, lambda = 0.0, z = 0.0, gl[3] = {0}, gz[3] = {0}, m[3] = {0}, gm[9] = {0}, f[3] = {0};
+  double D = 0.0, gD[3] = {0}, lambda = 0.0, z = 0.0, gl[3] = {0}, gz[3] = {0}, m[3] = {0}, gm[9] = {0}, f[3] = {0}, E = 0.0, gE[3] = {0};
 
   v->coverage = 0.0;
   for (int k = 0; k < 3; k++) v->grad_coverage[k] = 0.0;
@@ -203,6 +203,7 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
     D += q->w;
     lambda += q->w*q->lambda;
     z += q->w*q->z;
+    E += q->w*p->exposed[touch[i].proxy];
     v->coverage += q->cover;
     for (int k = 0; k < 3; k++) {
       gD[k] += q->grad_w[k];
@@ -210,15 +211,18 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
       gz[k] += q->grad_w[k]*q->z + q->w*q->grad_z[k];
       m[k] += q->w*b->n[k];
       for (int j = 0; j < 3; j++) gm[3*k + j] += b->n[k]*q->grad_w[j];
+      gE[k] += q->grad_w[k]*p->exposed[touch[i].proxy];
       f[k] += q->w*(p->centre[3*touch[i].proxy + k] + shift[k] - x[k]);
       v->grad_coverage[k] += q->grad_cover[k];
     }
   }
   v->lambda = lambda/D;
   v->z      = z/D;
+  v->exposed = E/D;
   for (int k = 0; k < 3; k++) {
     v->grad_lambda[k] = (gl[k] - v->lambda*gD[k])/D;
     v->grad_z[k]      = (gz[k] - v->z*gD[k])/D;
+    v->grad_exposed[k] = (gE[k] - v->exposed*gD[k])/D;
     v->n[k]           = m[k]/D;
     v->foot[k]        = f[k]/D;
     for (int j = 0; j < 3; j++) v->grad_n[3*k + j] = (gm[3*k + j] - v->n[k]*gD[j])/D;
@@ -277,7 +281,7 @@ static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3
   ProxyPatchValue value[PROXY_PATCHES];
 
   // the usual case: in front of one patch without open rims
-  if (n_slots == 1 && !p->surface.patch_open[slots[0]] && in_front) {
+  if (n_slots == 1 && !p->surface.patch_open[slots[0]] && in_front && !p->hides) {
     double lambda = 0.0, gD[3] = {0}, g[3] = {0};
     for (int i = 0; i < n; i++) {
       const ProxyPair *q = &touch[i].pair;
@@ -295,7 +299,7 @@ static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3
     PatchMeans(p, x, base, touch, n, s, &value[s]);
     value[s].open = p->surface.patch_open[slots[s]];
   }
-  return ProxyBodyPhi(n_slots, p->fluid.h, p->factor, value, grad);
+  return p->hides ? ProxyExposedPhi(n_slots, p->fluid.h, p->factor, value, grad) : ProxyBodyPhi(n_slots, p->fluid.h, p->factor, value, grad);
 }
 
 /* write one touched particle and its pairs; proxies with less than 1e-14 of the weight are left out */
@@ -342,8 +346,9 @@ static int ParticleEllipsoid(Chunk *c, const Proxy p, PetscInt particle, const d
     ImageShift(&p->fluid, base, p->cells.entry[e]%27, shift);
     for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
     if (OutOfReach(&p->reach[i], r)) continue;
-    const double part = ProxyPairEllipsoid(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, grad[n]);
+    const double part = p->exposed[i]*ProxyPairEllipsoid(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, grad[n]);
     if (part == 0.0) continue;
+    for (int k = 0; k < 3; k++) grad[n][k] *= p->exposed[i];
     phi += part;
     touch[n].pair.w = part;
     touch[n].proxy  = i;

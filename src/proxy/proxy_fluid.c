@@ -21,7 +21,6 @@ PetscErrorCode ProxySetFluid(Proxy proxy, SPH sph)
 {
   ProxyFluid fluid;
   SPHParams *params;
-  unsigned   walls;
 
   PetscFunctionBegin;
   PetscCall(SPHGetParams(sph, &params));
@@ -29,7 +28,8 @@ PetscErrorCode ProxySetFluid(Proxy proxy, SPH sph)
   fluid.dx     = params->spacing;
   fluid.kernel = params->kernel;
   fluid.gradient_kernel = SPHGradientKernel(params);
-  PetscCall(SPHGetDomain(sph, fluid.min, fluid.max, &walls, &fluid.periodic));
+  PetscCall(SPHGetDomain(sph, fluid.min, fluid.max, &fluid.walls, &fluid.periodic));
+  for (int k = 0; k < 6; k++) fluid.plane[k] = k % 2 ? fluid.max[k/2] : fluid.min[k/2];
   PetscCall(ProxySetFluidScale(proxy, &fluid));
   proxy->sph = sph;
   PetscFunctionReturn(PETSC_SUCCESS);

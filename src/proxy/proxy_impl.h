@@ -15,6 +15,8 @@ typedef struct {
   int      kernel, gradient_kernel; /* SPHKernelType of density, of gradients                              */
   double   min[3], max[3]; /* domain [m]: period along the periodic axes                                   */
   unsigned periodic;       /* bit k = axis k                                                               */
+  unsigned walls;          /* bit k = plane k is a wall, order xmin xmax ymin ymax zmin zmax               */
+  double   plane[6];       /* where they are now, along their axes [m]                                     */
 } ProxyFluid;
 
 /* connectivity of the surface, fixed */
@@ -91,6 +93,12 @@ typedef struct {
   PetscInt      capacity;
 } ProxyMask;
 
+/* an obstacle on which the surface may lie */
+typedef struct {
+  SurfaceIndex index;
+  double       lo[3], hi[3]; /* its box and a spacing around it [m] */
+} ProxyNeighbour;
+
 typedef struct {
   int dummy;
 } ProxyOps;
@@ -120,6 +128,10 @@ struct _p_Proxy {
   ProxyReach   *reach;          /* n                                                                       */
   PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
   PetscReal    *centre;         /* n x 3 [m], middle of the triangles that each stands for: always inside its patch */
+  PetscReal    *exposed;        /* n: 1 in the open, 0 where it lies on a wall (proxy_wall.c)              */
+  PetscBool     hides;          /* one of them is below 1                                                  */
+  PetscInt      n_neighbours;
+  ProxyNeighbour *neighbour;
   PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */
   PetscReal    *node_weight;    /* n_nodes: a third of the triangles around each [m^2]                     */
   SPHContacts   contacts;
@@ -161,6 +173,9 @@ PetscErrorCode ProxyPlaceAll(Proxy proxy);
 PetscErrorCode ProxyPlaceNear(Proxy proxy, PetscBool moved, PetscInt n, const PetscReal x[]);
 PetscErrorCode ProxyPlaceVelocities(Proxy proxy);
 PetscErrorCode ProxyPlaceDestroy(Proxy proxy);
+
+/* proxy_wall.c */
+void           ProxyExpose(Proxy proxy);
 
 /* proxy_mask.c */
 /* support of a proxy as a cylinder around its normal: half height and radius [m] */

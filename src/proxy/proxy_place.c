@@ -10,8 +10,8 @@ static PetscErrorCode Reserve(Proxy p, PetscInt n)
   p->capacity = n + n/4;
   PetscCall(PetscMalloc2(p->capacity, &p->reach, p->capacity, &p->points));
   PetscCall(PetscMalloc6(p->capacity, &p->active, p->capacity, &p->near, 3*p->capacity, &p->nodes, p->capacity, &p->patch, 3*p->capacity, &p->weights, p->capacity, &p->kappa));
-  PetscCall(PetscMalloc6(3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity, &p->force, 3*p->capacity,
-                         &p->centre));
+  PetscCall(PetscMalloc7(3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity, &p->force, 3*p->capacity,
+                         &p->centre, p->capacity, &p->exposed));
   PetscCall(PetscArrayzero(p->force, 3*p->capacity));
   PetscCall(PetscArrayzero(p->points, p->capacity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -22,7 +22,7 @@ PetscErrorCode ProxyPlaceDestroy(Proxy p)
   PetscFunctionBegin;
   PetscCall(PetscFree2(p->reach, p->points));
   PetscCall(PetscFree6(p->active, p->near, p->nodes, p->patch, p->weights, p->kappa));
-  PetscCall(PetscFree6(p->x, p->normal, p->area, p->velocity, p->force, p->centre));
+  PetscCall(PetscFree7(p->x, p->normal, p->area, p->velocity, p->force, p->centre, p->exposed));
   p->capacity = p->n = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

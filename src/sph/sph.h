@@ -212,6 +212,8 @@ BY_EXTERN PetscErrorCode SPHAddPatch(SPH sph, PetscInt wall, const PetscReal min
 BY_EXTERN PetscErrorCode SPHGetPatch(SPH sph, PetscInt patch, PetscReal *force, PetscReal *area);
 /* volume [m^3/s] through a rectangle across an axis, positive along the axis */
 BY_EXTERN PetscErrorCode SPHGetFlowRate(SPH sph, PetscInt axis, const PetscReal min[3], const PetscReal max[3], PetscReal *rate);
+/* where the six planes are, along their axes [m], order xmin xmax ymin ymax zmin zmax */
+BY_EXTERN PetscErrorCode SPHGetPlanes(SPH sph, PetscReal plane[6]);
 /* force [N] of the fluid on the six planes, order xmin xmax ymin ymax zmin zmax */
 BY_EXTERN PetscErrorCode SPHGetWallForces(SPH sph, PetscReal force[18]);
 /* power [W] of the fluid on each of them in the last step */

@@ -460,6 +460,13 @@ PetscErrorCode SPHGetForces(SPH sph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode SPHGetPlanes(SPH sph, PetscReal plane[6])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(plane, sph->plane, 6));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SPHGetWallPowers(SPH sph, PetscReal power[6])
 {
   PetscFunctionBegin;

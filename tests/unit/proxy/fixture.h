@@ -9,7 +9,7 @@
 
 static inline ProxyFluid FixtureFluid(void)
 {
-  ProxyFluid fluid = {1.0, 0.5, SPH_CUBIC, SPH_CUBIC, {-50, -50, -50}, {50, 50, 50}, 0};
+  ProxyFluid fluid = {1.0, 0.5, SPH_CUBIC, SPH_CUBIC, {-50, -50, -50}, {50, 50, 50}, 0, 0, {0}};
   return fluid;
 }
 

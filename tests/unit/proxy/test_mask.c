@@ -68,7 +68,7 @@ static void what_is_left_out_touches_nothing(void **state)
 /* a body across the periodic border: the water is on the other side of the box */
 static void periodic_images_are_near(void **state)
 {
-  const ProxyFluid fluid = {1.0, 0.5, SPH_CUBIC, SPH_CUBIC, {-4, -50, -50}, {16, 50, 50}, 1u};
+  const ProxyFluid fluid = {1.0, 0.5, SPH_CUBIC, SPH_CUBIC, {-4, -50, -50}, {16, 50, 50}, 1u, 0, {0}};
   const double     lo[3] = {14.5, -2, -2}, hi[3] = {15.9, 2, 2};
   (void)state;
   CheckShape(ShapeSphere(4.5, 12), PROXY_KERNEL_HALF_SPACE, &fluid, lo, hi, 0.5);
