@@ -6,3 +6,6 @@ byssus_module(proxy
 
 # the readers of src/surface.h belong to base
 target_sources(base PRIVATE ${CMAKE_SOURCE_DIR}/src/surface_read.c)
+# accuracy of samplings and kernels without a fluid: cmake --build build --target bench.proxy
+add_executable(bench.proxy EXCLUDE_FROM_ALL bench/bench_proxy.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:sph> $<TARGET_OBJECTS:proxy>)
+target_link_libraries(bench.proxy PRIVATE byssus_flags)
