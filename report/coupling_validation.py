@@ -36,8 +36,9 @@ def sides(directory, body, moment):
     return x, triangles[np.all(lowest[triangles], axis=1)]
 
 
-def moments(axes, result, body, times, spacing, box, limits, slab=None):
-    """water of the middle slice, coloured by its speed, and the side of a body, at some times"""
+def moments(axes, result, body, times, spacing, box, limits):
+    """the water of a slab, coloured by its speed, and the side of a body, at some times"""
+    slab = (box[0][1], box[1][1])
     for k, (ax, moment) in enumerate(zip(np.ravel(axes), times)):
         state = result.state_at(moment)
         draw.particles(ax, state.x, np.linalg.norm(state.v, axis=1), spacing, label="speed [m/s]" if k == len(times) - 1 else "", limits=limits, box=box, slab=slab)
@@ -105,7 +106,7 @@ def gate_pictures(runs, known):
     fine = runs[2]
     drawn, axes = draw.figure(3, 2, width=11, height=6)
     moments(axes, fine["result"], "gate", GATE_TIMES, fine["dx"], ((0, 0, 0), (0.25, 0.01, 0.15)), (0, 1.6))
-    return text + draw.save(drawn, "gate_moments", "the gate opens: water of the middle slice, plane strain, dx 2.5 mm")
+    return text + draw.save(drawn, "gate_moments", "the gate opens: plane strain, dx 2.5 mm")
 
 
 def gate():
@@ -171,7 +172,7 @@ def obstacle():
     text = draw.save(drawn, "obstacle", "displacement of the obstacle's tip against six authors")
     drawn, axes = draw.figure(3, 2, width=11, height=6.4)
     moments(axes, fine["result"], "plate", OBSTACLE_TIMES, fine["dx"], ((0, 0, 0), (0.584, DEPTH, 0.4)), (0, 3))
-    text += draw.save(drawn, "obstacle_moments", "the dam breaks on the obstacle: water of the middle slice")
+    text += draw.save(drawn, "obstacle_moments", "the dam breaks on the obstacle, dx 3.65 mm")
     return OBSTACLE + "\n\n" + table(["case", "particles", "first peak, mm", "at s", "rms difference, mm", "particles in the obstacle", "cpu, s"], rows) + text
 
 
