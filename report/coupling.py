@@ -9,19 +9,16 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from coupling_validation import gate, hydrostatic_plate, obstacle
-from sections import main
-
-SECTIONS = (
-    ("hydrostatic_plate", "A column of water on an elastic plate", hydrostatic_plate),
-    ("gate", "A dam breaks through an elastic gate", gate),
-    ("obstacle", "A dam breaks on an elastic obstacle", obstacle),
 from coupling_shapes import affine, shapes
+from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
 
 SECTIONS = (
     ("affine", "Sparse proxies on a plane", affine),
     ("shapes", "Hydrostatic force on known shapes over the density of proxies", shapes),
+    ("hydrostatic_plate", "A column of water on an elastic plate", hydrostatic_plate),
+    ("gate", "A dam breaks through an elastic gate", gate),
+    ("obstacle", "A dam breaks on an elastic obstacle", obstacle),
 )
 
 HEAD = """# Water and bodies against what is known
