@@ -276,37 +276,17 @@ static PetscErrorCode BodyPoint(CouplerSurface *s, const CouplerProbe *probe, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Force of the fluid's pressure on the proxies whose places on the undeformed surface lie in the box, along their normals, over their area:
-   a proxy stands for its own part of the surface. nan when no proxy is in the box. */
+/* mean pressure on the part of the undeformed surface that lies in the box; nan when the box misses it */
 static PetscErrorCode ProxyPatch(Coupler c, const CouplerProbe *probe, PetscReal *pressure)
 {
-  CouplerSurface    *s = &c->surface[probe->surface];
-  const ProbeParams *p = &probe->params;
-  const PetscReal   *X = NULL, *x, *normal, *kappa, *area, *weights;
-  const PetscInt    *nodes;
-  PetscReal          force = 0.0, total = 0.0;
-  PetscInt           n;
+  CouplerSurface *s = &c->surface[probe->surface];
+  PetscReal       force, area;
 
   PetscFunctionBegin;
   *pressure = NAN;
   if (!s->proxy) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->tled) PetscCall(TLEDGetMesh(s->tled, NULL, NULL, &X));
-  else PetscCall(ProxyGetSampling(s->proxy, &X)); // an obstacle is rigid: it was sampled where the scene puts it
-  PetscCall(ProxyGetPoints(s->proxy, &n, &x, &normal, &kappa, &area));
-  PetscCall(ProxyGetInterpolation(s->proxy, &n, &nodes, &weights));
-  for (PetscInt b = 0; b < n; b++) {
-    PetscBool inside = PETSC_TRUE;
-
-    for (int k = 0; k < 3; k++) {
-      PetscReal at = 0.0;
-      for (int a = 0; a < 3; a++) at += weights[3 * b + a] * X[3 * nodes[3 * b + a] + k];
-      if (at < p->min[k] || at > p->max[k]) inside = PETSC_FALSE;
-    }
-    if (!inside) continue;
-    total += area[b];
-    for (int k = 0; k < 3 && c->step > 0; k++) force -= s->proxy_force[3 * b + k] * normal[3 * b + k];
-  }
-  if (total > 0) *pressure = force / total;
+  PetscCall(ProxyGetPatch(s->proxy, probe->params.min, probe->params.max, c->step > 0 ? s->proxy_force : NULL, &force, &area));
+  if (area > 0.0) *pressure = force / area;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

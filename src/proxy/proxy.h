@@ -66,6 +66,9 @@ BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], con
 #define PROXY_FIELDS 8
 BY_EXTERN PetscErrorCode ProxyToNodes(Proxy proxy, PetscInt n, const PetscReal value[], const PetscReal weight[], PetscReal node_value[]);
 
+/* force into the surface [N] on the part that the box cuts out of it in its reference position, and its area [m^2]; force: n x 3 [N], may be NULL */
+BY_EXTERN PetscErrorCode ProxyGetPatch(Proxy proxy, const PetscReal min[3], const PetscReal max[3], const PetscReal force[], PetscReal *push, PetscReal *area);
+
 /* restart: positions [m], n_nodes x 3, at which the surface was last sampled; setting them samples it there again, to the same bits.
    After ProxySetSampling call ProxyUpdate with the current positions. */
 BY_EXTERN PetscErrorCode ProxyGetSampling(Proxy proxy, const PetscReal *x[]);
