@@ -80,9 +80,9 @@ const Key CouplerKeys[] = {
   {"response_every", KEY_INT,    ROW(CouplerParams, response_every), "1", "10", 1, 1e6, 0, NULL, "steps between refreshes of the tangent in the interface response"},
   {"passes",         KEY_INT,    ROW(CouplerParams, passes),         "1", "1", 1, 100, 0, NULL, "most pressure solves a step of scheme mass, each with the body's true answer to the last, until both agree by the tolerance"},
   {"relaxation",     KEY_CHOICE, ROW(CouplerParams, relaxation),     "",  "iqn_ils", 0, 0, 0, relaxations, "of the interface's velocity in iterations: quasi-Newton by least squares, or one factor by Aitken"},
-  {"relaxation_start", KEY_REAL, ROW(CouplerParams, relaxation_start), "1", "0.2", 0, 2, KEY_LO_OPEN, NULL, "first factor of scheme iterated without response"},
+  {"relaxation_start", KEY_REAL, ROW(CouplerParams, relaxation_start), "1", "0.05", 0, 2, KEY_LO_OPEN, NULL, "first factor of scheme iterated without response"},
   {"response",       KEY_BOOL,   ROW(CouplerParams, response),       "",  "true", 0, 0, 0, NULL, "iterated: the bodies answer within each pressure solve as in scheme mass, a first guess of the Jacobian, where sph.solver takes it; false = the textbook's iteration between fluid and body as they are"},
-  {"reuse",          KEY_INT,    ROW(CouplerParams, reuse),          "1", "8", 0, 50, 0, NULL, "steps whose differences iqn_ils keeps"},
+  {"reuse",          KEY_INT,    ROW(CouplerParams, reuse),          "1", "3", 0, 50, 0, NULL, "steps whose differences iqn_ils keeps"},
   {"tolerance",      KEY_REAL,   ROW(CouplerParams, tolerance),      "1", "1e-3", 0, 1, 0, NULL, "iterations end when the interface's mean velocity over the step, of fluid and body, agree by this, relative, rms"},
   {"iterations",     KEY_INT,    ROW(CouplerParams, iterations),     "1", "20", 1, 1000, 0, NULL, "most pressure solves a step of scheme iterated"},
   KEY_END};

@@ -12,6 +12,8 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
   return sum;
 }
 
+static PetscReal Norm(PetscInt n, const PetscReal a[]) { return PetscSqrtReal(Dot(n, a, a)); }
+
 PetscErrorCode RelaxationCreate(int kind, PetscReal start, PetscInt reuse, PetscInt n, Relaxation **relaxation)
 {
   Relaxation *r;
@@ -41,10 +43,32 @@ PetscErrorCode RelaxationDestroy(Relaxation **relaxation)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* leave column k out for good */
+static void DropColumn(Relaxation *r, PetscInt k)
+{
+  PetscReal *V = r->V[k], *W = r->W[k], *Q = r->Q[k];
+
+  r->n_columns--;
+  for (; k < r->n_columns; k++) {
+    r->V[k]   = r->V[k + 1];
+    r->W[k]   = r->W[k + 1];
+    r->Q[k]   = r->Q[k + 1];
+    r->age[k] = r->age[k + 1];
+  }
+  r->V[k] = V;
+  r->W[k] = W;
+  r->Q[k] = Q;
+}
+
 PetscErrorCode RelaxationBegin(Relaxation *r)
 {
+  PetscReal largest = 0.0;
+
   PetscFunctionBegin;
   r->count = 0;
+  for (PetscInt k = 0; k < r->n_columns && !r->age[k]; k++) largest = PetscMax(largest, Norm(r->n, r->V[k]));
+  for (PetscInt k = r->n_columns - 1; k >= 0; k--)
+    if (!r->age[k] && Norm(r->n, r->V[k]) < RELAXATION_NOISE * largest) DropColumn(r, k);
   for (PetscInt k = 0; k < r->n_columns; k++) r->age[k]++;
   while (r->n_columns && r->age[r->n_columns - 1] > r->reuse) r->n_columns--;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,30 +125,13 @@ static PetscErrorCode AddColumn(Relaxation *r, const PetscReal x[], const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* leave column k out for good */
-static void DropColumn(Relaxation *r, PetscInt k)
-{
-  PetscReal *V = r->V[k], *W = r->W[k], *Q = r->Q[k];
-
-  r->n_columns--;
-  for (; k < r->n_columns; k++) {
-    r->V[k]   = r->V[k + 1];
-    r->W[k]   = r->W[k + 1];
-    r->Q[k]   = r->Q[k + 1];
-    r->age[k] = r->age[k + 1];
-  }
-  r->V[k] = V;
-  r->W[k] = W;
-  r->Q[k] = Q;
-}
-
 /* V = Q R by Gram-Schmidt, twice, newest column first; columns that newer ones nearly span are dropped. R is upper triangular, by columns */
 static void Orthogonalise(Relaxation *r, PetscReal R[][RELAXATION_COLUMNS])
 {
   for (PetscInt k = 0; k < r->n_columns;) {
     PetscReal       *q    = r->Q[k], left;
     const PetscReal *v    = r->V[k];
-    const PetscReal  size = PetscSqrtReal(Dot(r->n, v, v));
+    const PetscReal  size = Norm(r->n, v);
 
     for (PetscInt i = 0; i < r->n; i++) q[i] = v[i];
     for (PetscInt j = 0; j < k; j++) R[k][j] = 0.0;
@@ -136,7 +143,7 @@ static void Orthogonalise(Relaxation *r, PetscReal R[][RELAXATION_COLUMNS])
         for (PetscInt i = 0; i < r->n; i++) q[i] -= part * r->Q[j][i];
       }
     }
-    left = PetscSqrtReal(Dot(r->n, q, q));
+    left = Norm(r->n, q);
     if (!(left > RELAXATION_FILTER * size)) {
       DropColumn(r, k);
       continue;
@@ -164,9 +171,32 @@ static void QuasiNewton(Relaxation *r, PetscReal x[], const PetscReal residual[]
     for (PetscInt i = 0; i < r->n; i++) x[i] += c[k] * r->W[k][i];
 }
 
+/* whether H is where it was, but for round-off: the fluid took the last pressure for the solution of this iterate too */
+static PetscBool StandsStill(const Relaxation *r, const PetscReal x[], const PetscReal residual[])
+{
+  PetscReal change = 0.0, size = 0.0;
+
+  for (PetscInt i = 0; i < r->n; i++) {
+    const PetscReal H = x[i] + residual[i], d = H - (r->x[i] + r->residual[i]);
+
+    change += d * d;
+    size += H * H;
+  }
+  return (PetscBool)(change <= 1e-26 * size);
+}
+
 PetscErrorCode RelaxationNext(Relaxation *r, PetscReal x[], const PetscReal residual[])
 {
+  const PetscReal size = Norm(r->n, residual);
+
   PetscFunctionBegin;
+  if (r->count && StandsStill(r, x, residual)) {
+    for (PetscInt i = 0; i < r->n; i++) x[i] += residual[i];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  // what other steps taught has led astray
+  while (r->count == 1 && size > r->size && r->n_columns && r->age[r->n_columns - 1]) r->n_columns--;
+  r->size = size;
   if (r->kind == RELAXATION_IQN_ILS && r->count) PetscCall(AddColumn(r, x, residual));
   if (r->kind == RELAXATION_AITKEN) r->factor = AitkenFactor(r, residual);
   PetscCall(PetscArraycpy(r->x, x, r->n));

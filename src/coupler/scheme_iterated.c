@@ -122,6 +122,7 @@ static PetscErrorCode Iterate(Coupler c, PetscReal dt, PetscInt most)
     }
     PetscCall(CouplerTimer(c, PHASE_SOLID));
     PetscCall(Residual(c, dt, PETSC_FALSE));
+    if (most > 1) PetscCall(PetscInfo(c, "step %" PetscInt_FMT ", solve %" PetscInt_FMT ": interface residual %.3g\n", c->step + 1, c->solves, (double)c->mismatch));
     if (c->mismatch <= c->params.tolerance || c->solves >= most) break;
     PetscCall(NextVelocity(c));
     for (PetscInt k = 0; k < c->n_bodies; k++)
