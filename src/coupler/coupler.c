@@ -338,6 +338,7 @@ PetscErrorCode CouplerDestroy(Coupler *coupler)
     PetscCall(PetscFree6(s->force, s->start, s->mean_velocity, s->wall_velocity, s->answer, s->seen));
     PetscCall(PetscFree2(s->proxy_force, s->proxy_work));
     PetscCall(PetscFree(s->interface));
+    PetscCall(PetscFree(s->arm));
   }
   PetscCall(PetscFree2(c->interface, c->residual));
   PetscCall(RelaxationDestroy(&c->relaxation));

@@ -45,6 +45,8 @@ typedef struct {
   PetscReal      *proxy_force;   /* per proxy, 3 [N]                                                       */
   PetscReal      *proxy_work;    /* per proxy, 3: scratch of the response                                  */
   PetscInt        capacity;      /* proxies allocated                                                      */
+  PetscReal      *arm;           /* per touched particle, 3: couple of its pairs' shares about their proxies; of bodies that answer */
+  PetscInt        n_arms;        /* allocated                                                              */
   PetscReal       work_fluid, work_solid, work_exchanged; /* [J] since the start; the last is the sum of the fluid's absolute works */
   PetscReal       total[3];      /* [N] of the last step                                                   */
   PetscInt        substeps;      /* of the last step                                                       */
@@ -111,6 +113,7 @@ PETSC_INTERN PetscErrorCode CouplerLimitStep(Coupler coupler, PetscReal *dt);
 /* coupler_fill.c */
 PETSC_INTERN PetscErrorCode CouplerBuildFluid(Coupler coupler, const DomainParams *domain);
 /* scheme_mass.c */
+PETSC_INTERN PetscErrorCode CouplerArms(Coupler coupler, PetscInt k);
 PETSC_INTERN PetscErrorCode CouplerResponseSetUp(Coupler coupler, CouplerSurface *s, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], PetscReal velocity[]);
 PETSC_INTERN PetscErrorCode CouplerResponseApply(void *coupler, PetscInt n, const PetscReal p[], PetscReal Ap[]);

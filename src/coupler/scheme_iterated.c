@@ -100,7 +100,10 @@ static PetscErrorCode Begin(Coupler c, PetscReal dt, PetscInt *most)
     s->answers  = (PetscBool)(s->touched && (s->scheme == COUPLER_SCHEME_MASS || (s->scheme == COUPLER_SCHEME_ITERATED && c->responds && c->params.response)));
     s->iterates = (PetscBool)(s->touched && (s->scheme == COUPLER_SCHEME_ITERATED || (s->answers && c->params.passes > 1)));
     if (s->iterates) *most = s->scheme == COUPLER_SCHEME_MASS ? c->params.passes : c->params.iterations;
-    if (s->answers) c->compliant = PETSC_TRUE;
+    if (s->answers) {
+      c->compliant = PETSC_TRUE;
+      PetscCall(CouplerArms(c, k));
+    }
     if (!s->proxy) continue;
     ByCall(CouplerPredictWall(c, s, dt));
     PetscCall(CouplerBaseVelocity(s));

@@ -140,6 +140,33 @@ PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* For the couple of a transfer (ProxyTransfer()): sum over the pairs of each touched particle of (x_i - x_b) x share, in s->arm */
+PetscErrorCode CouplerArms(Coupler c, PetscInt k)
+{
+  CouplerSurface    *s = &c->surface[k];
+  const SPHContacts *q = &c->contacts[k];
+
+  PetscFunctionBegin;
+  if (q->n_touched > s->n_arms) {
+    s->n_arms = q->n_touched + q->n_touched / 2;
+    PetscCall(PetscFree(s->arm));
+    PetscCall(PetscMalloc1(3 * s->n_arms, &s->arm));
+  }
+  for (PetscInt t = 0; t < q->n_touched; t++) {
+    PetscReal *arm = s->arm + 3 * t;
+
+    for (int i = 0; i < 3; i++) arm[i] = 0.0;
+    for (PetscInt j = q->start[t]; j < q->start[t + 1]; j++) {
+      double r[3], m[3];
+
+      Sub3(q->position + 3 * t, q->place + 3 * q->proxy[j], r);
+      Cross3(r, q->share + 3 * j, m);
+      for (int i = 0; i < 3; i++) arm[i] += m[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* nodal forces of the pressures p~ on one surface, in s->answer; proxy_work is scratch */
 static PetscErrorCode ForcesFromPressure(Coupler c, PetscInt k, const PetscReal p[], const PetscReal factor[])
 {
@@ -147,6 +174,7 @@ static PetscErrorCode ForcesFromPressure(Coupler c, PetscInt k, const PetscReal 
   const SPHContacts *q = &c->contacts[k];
   const PetscInt    *nodes;
   const PetscReal   *weights;
+  PetscReal          moment[3] = {0, 0, 0};
   PetscInt           n_proxies;
 
   PetscFunctionBegin;
@@ -156,6 +184,7 @@ static PetscErrorCode ForcesFromPressure(Coupler c, PetscInt k, const PetscReal 
     const PetscReal scale = c->mass * p[q->particle[t]] * c->rest_density * factor[t];
 
     if (scale == 0.0) continue;
+    for (int i = 0; i < 3; i++) moment[i] += scale * s->arm[3 * t + i];
     for (PetscInt j = q->start[t]; j < q->start[t + 1]; j++) {
       for (int i = 0; i < 3; i++) s->proxy_work[3 * q->proxy[j] + i] += scale * q->share[3 * j + i];
     }
@@ -166,19 +195,22 @@ static PetscErrorCode ForcesFromPressure(Coupler c, PetscInt k, const PetscReal 
       for (int i = 0; i < 3; i++) s->answer[3 * nodes[3 * b + a] + i] += weights[3 * b + a] * s->proxy_work[3 * b + i];
     }
   }
+  PetscCall(ProxyAddCouple(s->proxy, moment, s->answer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ap_i += dt sum_b g_ib . v_b with the proxies' velocities interpolated from s->answer */
+/* Ap_i += dt sum_b g_ib . (v_b + rotation x (x_i - x_b)) with the velocities of s->answer: the transpose of ForcesFromPressure() */
 static PetscErrorCode AddWallRate(Coupler c, PetscInt k, const PetscReal factor[], PetscReal Ap[])
 {
   CouplerSurface    *s = &c->surface[k];
   const SPHContacts *q = &c->contacts[k];
   const PetscInt    *nodes;
   const PetscReal   *weights;
+  PetscReal          rotation[3];
   PetscInt           n_proxies;
 
   PetscFunctionBegin;
+  PetscCall(ProxyGetRotation(s->proxy, s->answer, rotation));
   PetscCall(ProxyGetInterpolation(s->proxy, &n_proxies, &nodes, &weights));
   for (PetscInt b = 0; b < n_proxies; b++) {
     for (int i = 0; i < 3; i++) {
@@ -187,7 +219,7 @@ static PetscErrorCode AddWallRate(Coupler c, PetscInt k, const PetscReal factor[
     }
   }
   for (PetscInt t = 0; t < q->n_touched; t++) {
-    PetscReal rate = 0.0;
+    PetscReal rate = Dot3(rotation, s->arm + 3 * t);
 
     for (PetscInt j = q->start[t]; j < q->start[t + 1]; j++) {
       for (int i = 0; i < 3; i++) rate += q->share[3 * j + i] * s->proxy_work[3 * q->proxy[j] + i];

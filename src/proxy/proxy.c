@@ -234,6 +234,7 @@ PetscErrorCode ProxySetVelocity(Proxy p, const PetscReal v[])
     PetscCall(PetscArraycpy(p->node_velocity, v, 3*p->surface.n_nodes));
   }
   PetscCall(ProxyPlaceVelocities(p));
+  if (v) PetscCall(ProxyGetRotation(p, v, p->rotation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

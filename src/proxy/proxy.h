@@ -60,6 +60,10 @@ BY_EXTERN PetscErrorCode ProxyGetInterpolation(Proxy proxy, PetscInt *n_proxies,
 /* adds to nodal forces (n_nodes x 3 [N]) the forces on proxies; total force and total moment (about any point) equal those
    that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces at the proxies) */
 BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[]);
+/* the part of it that takes a moment [N m] to the nodes, added to node_force, and its transpose: rotation [rad/s] of the surface as a whole by nodal
+   velocities, so that node_force . v = moment . rotation */
+BY_EXTERN PetscErrorCode ProxyAddCouple(Proxy proxy, const PetscReal moment[3], PetscReal node_force[]);
+BY_EXTERN PetscErrorCode ProxyGetRotation(Proxy proxy, const PetscReal v[], PetscReal rotation[3]);
 
 /* fields at the nodes of the surface, n_nodes x n, from n values (at most PROXY_FIELDS) at each proxy that count by weight >= 0 (NULL: by area, and as 0
    where no fluid is near); 0 where no proxy is near */

@@ -494,6 +494,8 @@ PetscErrorCode ProxyFindContacts(Proxy p, PetscInt n, const PetscReal x[], SPHCo
   contacts->n_proxies = p->n;
   contacts->area      = p->area;
   contacts->velocity  = p->node_velocity ? p->velocity : NULL;
+  contacts->place     = p->x;
+  contacts->rotation  = p->rotation;
   contacts->force     = p->force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

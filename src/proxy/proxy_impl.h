@@ -133,6 +133,7 @@ struct _p_Proxy {
   PetscInt      n_neighbours;
   ProxyNeighbour *neighbour;
   PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */
+  PetscReal     rotation[3];    /* [rad/s] of the surface as a whole, by node_velocity                      */
   PetscReal    *node_weight;    /* n_nodes: a third of the triangles around each [m^2]                     */
   SPHContacts   contacts;
   void         *chunks;         /* result buffers of proxy_contacts.c                                      */

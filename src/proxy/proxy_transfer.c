@@ -48,11 +48,24 @@ static void MissingMoment(const Proxy p, const double f[], const double c[3], co
   }
 }
 
-/* add the self-balanced field f_a += w_a theta x (x_a - c), sum w (x_a - c) = 0: no force, and the moment M about any point */
-static void AddCouple(const Proxy p, const double c[3], const double M[3], double f[])
+/* centre of the nodal weights */
+static void Center(const Proxy p, double c[3])
+{
+  PetscReal weight = 0.0;
+
+  for (int k = 0; k < 3; k++) c[k] = 0.0;
+  for (PetscInt a = 0; a < p->surface.n_nodes; a++) {
+    weight += p->node_weight[a];
+    for (int k = 0; k < 3; k++) c[k] += p->node_weight[a]*p->geometry.x[3*a + k];
+  }
+  for (int k = 0; k < 3; k++) c[k] /= weight;
+}
+
+/* theta of the couple M: (sum_a w_a (|r|^2 - r r)) theta = M, r from c */
+static void CoupleAxis(const Proxy p, const double c[3], const double M[3], double theta[3])
 {
   const PetscReal *w = p->node_weight;
-  double           A[9] = {0}, theta[3];
+  double           A[9] = {0};
 
   for (PetscInt a = 0; a < p->surface.n_nodes; a++) {
     double r[3];
@@ -64,6 +77,15 @@ static void AddCouple(const Proxy p, const double c[3], const double M[3], doubl
     }
   }
   SolveSymmetric(A, M, theta);
+}
+
+/* add the self-balanced field f_a += w_a theta x (x_a - c), sum w (x_a - c) = 0: no force, and the moment M about any point */
+static void AddCouple(const Proxy p, const double c[3], const double M[3], double f[])
+{
+  const PetscReal *w = p->node_weight;
+  double           theta[3];
+
+  CoupleAxis(p, c, M, theta);
   for (PetscInt a = 0; a < p->surface.n_nodes; a++) {
     double r[3], d[3];
     if (w[a] == 0.0) continue;
@@ -71,6 +93,52 @@ static void AddCouple(const Proxy p, const double c[3], const double M[3], doubl
     Cross3(theta, r, d);
     for (int k = 0; k < 3; k++) f[3*a + k] += w[a]*d[k];
   }
+}
+
+PetscErrorCode ProxyAddCouple(Proxy p, const PetscReal moment[3], PetscReal node_force[])
+{
+  double c[3];
+
+  PetscFunctionBegin;
+  if (!p->n) PetscFunctionReturn(PETSC_SUCCESS);
+  Center(p, c);
+  AddCouple(p, c, moment, node_force);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ProxyGetRotation - how nodal velocities turn the surface as a whole: the transpose of what ProxyTransfer() does with a couple
+
+  Input Parameters:
++ proxy - the proxies
+- v     - nodal velocities [m/s], n_nodes x 3
+
+  Output Parameter:
+. rotation - omega = A^+ sum_a w_a (x_a - c) x v_a [rad/s]; of a rigid motion its angular velocity
+
+  Notes:
+  A particle at x_i feels proxy b as v_b + omega x (x_i - x_b). Then the work that the fluid does, sum F_ib . (that velocity), is that of the nodal
+  forces of ProxyTransfer() on the nodal velocities, to round-off.
+
+  Tests: tests/unit/proxy/test_transfer.c
+@*/
+PetscErrorCode ProxyGetRotation(Proxy p, const PetscReal v[], PetscReal rotation[3])
+{
+  double c[3], L[3] = {0, 0, 0};
+
+  PetscFunctionBegin;
+  for (int k = 0; k < 3; k++) rotation[k] = 0.0;
+  if (!p->n) PetscFunctionReturn(PETSC_SUCCESS);
+  Center(p, c);
+  for (PetscInt a = 0; a < p->surface.n_nodes; a++) {
+    double r[3], l[3];
+    if (p->node_weight[a] == 0.0) continue;
+    Sub3(&p->geometry.x[3*a], c, r);
+    Cross3(r, &v[3*a], l);
+    for (int k = 0; k < 3; k++) L[k] += p->node_weight[a]*l[k];
+  }
+  CoupleAxis(p, c, L, rotation);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -99,7 +167,7 @@ static void AddCouple(const Proxy p, const double c[3], const double M[3], doubl
 @*/
 PetscErrorCode ProxyTransfer(Proxy p, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[])
 {
-  PetscReal *f, c[3] = {0, 0, 0}, weight = 0.0, total[3] = {0, 0, 0}, wanted[3] = {0, 0, 0}, M[3], shift[3];
+  PetscReal *f, c[3], total[3] = {0, 0, 0}, wanted[3] = {0, 0, 0}, M[3], shift[3];
 
   PetscFunctionBegin;
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
@@ -114,12 +182,8 @@ PetscErrorCode ProxyTransfer(Proxy p, const PetscReal force[], const PetscReal m
     for (int k = 0; k < 3; k++) total[k] += force[3*b + k], wanted[k] += m[k];
   }
 
-  // centre of the nodal weights; moments about it, where the numbers are small
-  for (PetscInt a = 0; a < p->surface.n_nodes; a++) {
-    weight += p->node_weight[a];
-    for (int k = 0; k < 3; k++) c[k] += p->node_weight[a]*p->geometry.x[3*a + k];
-  }
-  for (int k = 0; k < 3; k++) c[k] /= weight;
+  // moments about the centre, where the numbers are small
+  Center(p, c);
   if (moment) {
     for (int k = 0; k < 3; k++) wanted[k] = moment[k];
   }

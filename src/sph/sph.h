@@ -116,6 +116,8 @@ typedef struct {
   PetscInt         n_proxies;
   const PetscReal *area;          /* n_proxies [m^2]; NULL = not known                                     */
   const PetscReal *velocity;      /* n_proxies x 3 [m/s], mean over the coming step; NULL = at rest        */
+  const PetscReal *place;         /* n_proxies x 3 [m]; with `rotation` [rad/s] the velocity at a particle is v_b + rotation x (x_i - x_b); NULL: v_b */
+  const PetscReal *rotation;
   PetscBool        slip;          /* a viscous fluid slips along it                                        */
   PetscReal       *force;         /* n_proxies x 3 [N], out: force of the fluid on each proxy; may be NULL */
   PetscReal        total[3];      /* [N] out: total force of the fluid on this surface                     */

@@ -297,6 +297,19 @@ PetscErrorCode SPHGetUnionFactors(SPH sph, PetscInt surface, const PetscReal *c[
 }
 
 /* wall_rate_i = sum_b rho0 c share . v_b + sum_k v_k . G_ik, the density rate that the walls' own motion takes away */
+/* velocity of the wall where touched particle t is, as proxy b has it: the body turns as a whole, and what acts a distance away from the surface does so
+   there (the transpose of ProxyTransfer()) */
+static void WallVelocity(const SPHContacts *q, PetscInt t, PetscInt b, PetscReal v[3])
+{
+  double r[3], turn[3];
+
+  for (int k = 0; k < 3; k++) v[k] = q->velocity[3 * b + k];
+  if (!q->rotation || !q->place) return;
+  Sub3(q->position + 3 * t, q->place + 3 * b, r);
+  Cross3(q->rotation, r, turn);
+  for (int k = 0; k < 3; k++) v[k] += turn[k];
+}
+
 PetscErrorCode SPHWallRate_Internal(SPH sph)
 {
   const PetscReal rho0 = sph->params.density;
@@ -319,7 +332,10 @@ PetscErrorCode SPHWallRate_Internal(SPH sph)
     for (PetscInt t = 0; t < q->n_touched; t++) {
       PetscReal rate = 0.0;
       for (PetscInt b = q->start[t]; b < q->start[t + 1]; b++) {
-        const PetscReal *v = q->velocity + 3 * q->proxy[b], *share = q->share + 3 * b;
+        const PetscReal *share = q->share + 3 * b;
+        PetscReal        v[3];
+
+        WallVelocity(q, t, q->proxy[b], v);
         rate += share[0] * v[0] + share[1] * v[1] + share[2] * v[2];
       }
       sph->wall_rate[q->particle[t]] += rho0 * sph->surfaces[s].union_factor[t] * rate;
@@ -428,14 +444,17 @@ static void SurfaceForces(SPH sph, SPHContacts *q, const SPHSurfaceWork *w)
     PetscReal        sum[3]   = {0, 0, 0};
 
     for (PetscInt b = q->start[t]; b < q->start[t + 1]; b++) {
-      const PetscReal *share  = q->share + 3 * b, *v = q->velocity ? q->velocity + 3 * q->proxy[b] : NULL, *slid = nu > 0 && w->velocity ? w->velocity + 3 * q->proxy[b] : NULL;
+      const PetscReal *share  = q->share + 3 * b, *slid = nu > 0 && w->velocity ? w->velocity + 3 * q->proxy[b] : NULL;
       const PetscReal  weight = friction * (share[0] * grad[0] + share[1] * grad[1] + share[2] * grad[2]);
 
+      PetscReal v[3] = {0, 0, 0};
+
+      if (q->velocity) WallVelocity(q, t, q->proxy[b], v);
       for (int k = 0; k < 3; k++) {
         const PetscReal f = pressure * share[k] + (slid ? weight * (sph->v_viscous[3 * i + k] - slid[k]) : 0.0);
         sum[k] += f;
         if (q->force) q->force[3 * q->proxy[b] + k] += f;
-        if (v) q->power += f * v[k];
+        q->power += f * v[k];
       }
     }
     for (int k = 0; k < 3; k++) q->total[k] += sum[k];
