@@ -108,8 +108,12 @@ static void UpdateGeometry(Proxy p)
 
 static PetscErrorCode Sample(Proxy p)
 {
+  PetscBool folded;
+
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(EventSample, 0, 0, 0, 0));
+  PetscCall(ProxySurfaceFold(p->params.feature_angle, &p->fluid, p->geometry.x, &p->surface, &folded));
+  if (folded) UpdateGeometry(p);
   PetscCall(ProxySample(&p->surface, &p->geometry, &p->params, &p->fluid, p->density, &p->sampling));
   PetscCall(ProxyPlaceSampled(p));
   PetscCall(ProxyMeasureParts(&p->surface, &p->geometry, p->points, &p->sampling));
@@ -190,7 +194,7 @@ static PetscReal Change(const Proxy p)
 
   Notes:
   Positions follow by barycentric weights; normals, shape operators and areas are those of the deformed surface. The surface is sampled
-  afresh when an edge or area has changed by more than resample_tolerance since the last sampling. Only proxies that a particle of the
+  afresh when an edge or area has changed by more than resample_tolerance since the last sampling, or a crease has come or gone. Only proxies that a particle of the
   fluid may touch where it is now are placed and in use: their number changes from step to step. A surface that has not moved, and where no
   water came or went, costs a comparison.
 @*/
@@ -205,7 +209,7 @@ PetscErrorCode ProxyUpdate(Proxy p, const PetscReal x[], const PetscReal v[])
   if (!same) {
     PetscCall(PetscArraycpy(p->geometry.x, x, 3*p->surface.n_nodes));
     UpdateGeometry(p);
-    if (p->params.resample_tolerance == 0.0 || Change(p) > p->params.resample_tolerance) PetscCall(Sample(p));
+    if (p->params.resample_tolerance == 0.0 || Change(p) > p->params.resample_tolerance || ProxySurfaceCreased(p->params.feature_angle, &p->surface, p->geometry.normal)) PetscCall(Sample(p));
   }
   if (p->sph) {
     const PetscReal *at;

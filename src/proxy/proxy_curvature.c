@@ -5,7 +5,7 @@
 PetscErrorCode ProxyGeometryCreate(const ProxySurface *s, ProxyGeometry *g)
 {
   PetscFunctionBegin;
-  PetscCall(PetscMalloc5(3*s->n_nodes, &g->x, s->n_triangles, &g->area, 3*s->n_triangles, &g->normal, 3*s->n_fans, &g->fan_normal,
+  PetscCall(PetscMalloc5(3*s->n_nodes, &g->x, s->n_triangles, &g->area, 3*s->n_triangles, &g->normal, 9*s->n_triangles, &g->fan_normal,
                          6*s->n_triangles, &g->shape));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

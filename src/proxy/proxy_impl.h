@@ -9,6 +9,9 @@
 /* bound on principal curvatures, times h: the profile's 1 + c z stays positive for |z| < h */
 #define PROXY_CURVATURE 0.9
 
+/* [degree] by which an edge passes the feature angle before the surface is sampled afresh, so that it does not go to and fro */
+#define PROXY_FOLD_MARGIN 5.0
+
 /* what the proxies must know of the fluid */
 typedef struct {
   double   h, dx;          /* support radius, spacing [m]                                                  */
@@ -28,7 +31,8 @@ typedef struct {
   PetscInt  *edge_triangles; /* n_edges x 2; second is -1 on an open border                                */
   PetscInt  *edge_side;      /* n_edges x 2: which side (0..2, from corner i to i + 1) of those triangles   */
   PetscInt  *triangle_edges; /* n_triangles x 3                                                            */
-  PetscBool *edge_sharp;     /* n_edges: dihedral angle beyond feature_angle, or open                      */
+  PetscBool *edge_sharp;     /* n_edges: ends a smooth patch: open, or of a dihedral angle beyond feature_angle ... */
+  PetscBool *edge_feature, *edge_fold; /* ... in the reference position; where the surface was last sampled */
   PetscInt  *patch;          /* n_triangles: smooth part of the surface                                    */
   PetscBool *patch_open;     /* n_patches: has an open border                                              */
   PetscBool *patch_sharp;    /* n_patches: has a sharp edge                                                */
@@ -144,6 +148,10 @@ struct _p_Proxy {
 PetscErrorCode ProxySurfaceBuild(const char key[], PetscReal feature_angle, const ProxyFluid *fluid, PetscInt n_nodes, const PetscReal X[],
                                  PetscInt n_triangles, const PetscInt triangles[], ProxySurface *surface);
 PetscErrorCode ProxySurfaceDestroy(ProxySurface *surface);
+/* creases that deformation has made or smoothed at the places x: sharp edges, patches and fans anew when there are others than before */
+PetscErrorCode ProxySurfaceFold(PetscReal feature_angle, const ProxyFluid *fluid, const PetscReal x[], ProxySurface *surface, PetscBool *changed);
+/* has an edge passed feature_angle since the last ProxySurfaceFold(), by PROXY_FOLD_MARGIN and more? normal: of the triangles now */
+PetscBool      ProxySurfaceCreased(PetscReal feature_angle, const ProxySurface *surface, const PetscReal normal[]);
 
 /* proxy_curvature.c */
 PetscErrorCode ProxyGeometryCreate(const ProxySurface *surface, ProxyGeometry *geometry);

@@ -76,7 +76,7 @@ static PetscErrorCode BuildEdges(const char key[], ProxySurface *s)
   PetscInt *start, *item, n = s->n_triangles, n_edges = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc5(6*n, &s->edge_nodes, 6*n, &s->edge_triangles, 6*n, &s->edge_side, 3*n, &s->triangle_edges, 3*n, &s->edge_sharp));
+  PetscCall(PetscMalloc7(6*n, &s->edge_nodes, 6*n, &s->edge_triangles, 6*n, &s->edge_side, 3*n, &s->triangle_edges, 3*n, &s->edge_sharp, 3*n, &s->edge_feature, 3*n, &s->edge_fold));
   PetscCall(PetscCalloc1(s->n_nodes + 2, &start));
   PetscCall(PetscMalloc1(3*n, &item));
   for (PetscInt i = 0; i < 3*n; i++) {
@@ -125,23 +125,23 @@ static PetscErrorCode BuildEdges(const char key[], ProxySurface *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sharp = dihedral angle beyond feature_angle [degree], or open */
-static void MarkSharp(PetscReal feature_angle, ProxySurface *s)
+/* whether the dihedral angle of every edge is beyond feature_angle [degree] at the places x; open edges: no */
+static void MarkFolds(PetscReal feature_angle, const ProxySurface *s, const PetscReal x[], PetscBool fold[])
 {
   const double limit = cos(PetscMin(feature_angle, 180.0) * BY_PI/180.0);
 
   for (PetscInt e = 0; e < s->n_edges; e++) {
     double n[2][3];
-    s->edge_sharp[e] = PETSC_TRUE;
+    fold[e] = PETSC_FALSE;
     if (s->edge_triangles[2*e + 1] < 0) continue;
     for (int k = 0; k < 2; k++) {
       const PetscInt *v = &s->triangles[3*s->edge_triangles[2*e + k]];
       double          e1[3], e2[3];
-      Sub3(&s->X[3*v[1]], &s->X[3*v[0]], e1);
-      Sub3(&s->X[3*v[2]], &s->X[3*v[0]], e2);
+      Sub3(&x[3*v[1]], &x[3*v[0]], e1);
+      Sub3(&x[3*v[2]], &x[3*v[0]], e2);
       Cross3(e1, e2, n[k]);
     }
-    s->edge_sharp[e] = (PetscBool)(Dot3(n[0], n[1]) < limit * Norm3(n[0]) * Norm3(n[1]));
+    fold[e] = (PetscBool)(Dot3(n[0], n[1]) < limit * Norm3(n[0]) * Norm3(n[1]));
   }
 }
 
@@ -191,6 +191,14 @@ static PetscInt FindRoot(PetscInt parent[], PetscInt i)
   return i;
 }
 
+static PetscErrorCode DestroyPatches(ProxySurface *s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(s->patch));
+  PetscCall(PetscFree2(s->patch_open, s->patch_sharp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A patch of less than 0.03 h^2 is noise at the kernel's scale (a fold of a scanned mesh): it joins the neighbour with which it shares the
    longest border, so that its plane does not act as a half space. */
 static PetscErrorCode AbsorbSmallPatches(PetscReal h, ProxySurface *s)
@@ -230,8 +238,7 @@ static PetscErrorCode AbsorbSmallPatches(PetscReal h, ProxySurface *s)
   }
   PetscCall(PetscFree2(area, border));
   if (joined) {
-    PetscCall(PetscFree(s->patch));
-    PetscCall(PetscFree2(s->patch_open, s->patch_sharp));
+    PetscCall(DestroyPatches(s));
     PetscCall(BuildPatches(s));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -279,6 +286,59 @@ static PetscErrorCode BuildFans(ProxySurface *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* sharp edges, smooth patches between them, fans */
+static PetscErrorCode BuildSmoothParts(PetscReal h, ProxySurface *s)
+{
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < s->n_edges; e++) s->edge_sharp[e] = (PetscBool)(s->edge_triangles[2*e + 1] < 0 || s->edge_feature[e] || s->edge_fold[e]);
+  PetscCall(BuildPatches(s));
+  PetscCall(AbsorbSmallPatches(h, s));
+  PetscCall(BuildFans(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyFans(ProxySurface *s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(s->fan, s->fan_corner));
+  PetscCall(PetscFree(s->fan_start));
+  PetscCall(PetscFree(s->fan_sharp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ProxySurfaceFold(PetscReal feature_angle, const ProxyFluid *fluid, const PetscReal x[], ProxySurface *s, PetscBool *changed)
+{
+  PetscBool *fold, same;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(s->n_edges, &fold));
+  MarkFolds(feature_angle, s, x, fold);
+  PetscCall(PetscArraycmp(fold, s->edge_fold, s->n_edges, &same));
+  *changed = (PetscBool)!same;
+  if (!same) {
+    PetscCall(PetscArraycpy(s->edge_fold, fold, s->n_edges));
+    PetscCall(DestroyPatches(s));
+    PetscCall(DestroyFans(s));
+    PetscCall(BuildSmoothParts(fluid->h, s));
+  }
+  PetscCall(PetscFree(fold));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ProxySurfaceCreased(PetscReal feature_angle, const ProxySurface *s, const PetscReal normal[])
+{
+  const double fold = cos(PetscMin(180.0, feature_angle + PROXY_FOLD_MARGIN)*BY_PI/180.0), smooth = cos(PetscMax(0.0, feature_angle - PROXY_FOLD_MARGIN)*BY_PI/180.0);
+  int          creased = 0;
+
+#pragma omp parallel for schedule(static) reduction(| : creased)
+  for (PetscInt e = 0; e < s->n_edges; e++) {
+    if (s->edge_triangles[2*e + 1] < 0 || s->edge_feature[e]) continue;
+    const double cosine = Dot3(&normal[3*s->edge_triangles[2*e]], &normal[3*s->edge_triangles[2*e + 1]]);
+    creased |= s->edge_fold[e] ? cosine > smooth : cosine < fold;
+  }
+  return (PetscBool)creased;
+}
+
 /* Build the connectivity of a surface. `key` is the scene key that named it, for messages; an edge of three triangles, neighbours
    of opposite orientation and triangles without area are the user's errors. */
 PetscErrorCode ProxySurfaceBuild(const char key[], PetscReal feature_angle, const ProxyFluid *fluid, PetscInt n_nodes, const PetscReal X[],
@@ -288,10 +348,9 @@ PetscErrorCode ProxySurfaceBuild(const char key[], PetscReal feature_angle, cons
   PetscCall(CopyTriangles(fluid, n_nodes, X, n_triangles, triangles, surface));
   ByCall(CheckTriangles(key, surface));
   ByCall(BuildEdges(key, surface));
-  MarkSharp(feature_angle, surface);
-  PetscCall(BuildPatches(surface));
-  PetscCall(AbsorbSmallPatches(fluid->h, surface));
-  PetscCall(BuildFans(surface));
+  MarkFolds(feature_angle, surface, surface->X, surface->edge_feature);
+  PetscCall(PetscArraycpy(surface->edge_fold, surface->edge_feature, surface->n_edges));
+  PetscCall(BuildSmoothParts(fluid->h, surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -299,12 +358,9 @@ PetscErrorCode ProxySurfaceDestroy(ProxySurface *s)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree2(s->X, s->triangles));
-  PetscCall(PetscFree5(s->edge_nodes, s->edge_triangles, s->edge_side, s->triangle_edges, s->edge_sharp));
-  PetscCall(PetscFree(s->patch));
-  PetscCall(PetscFree2(s->patch_open, s->patch_sharp));
-  PetscCall(PetscFree2(s->fan, s->fan_corner));
-  PetscCall(PetscFree(s->fan_start));
-  PetscCall(PetscFree(s->fan_sharp));
+  PetscCall(PetscFree7(s->edge_nodes, s->edge_triangles, s->edge_side, s->triangle_edges, s->edge_sharp, s->edge_feature, s->edge_fold));
+  PetscCall(DestroyPatches(s));
+  PetscCall(DestroyFans(s));
   PetscCall(PetscMemzero(s, sizeof(*s)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

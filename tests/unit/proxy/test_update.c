@@ -161,6 +161,61 @@ static void ellipsoids_stretch_with_the_surface(void **state)
   ShapeFree(&s);
 }
 
+/* the half x > 0 of a plate turned up about the y axis by an angle [degree] */
+static void Fold(const Shape *s, double angle, double x[])
+{
+  const double c = cos(angle*M_PI/180.0), d = sin(angle*M_PI/180.0);
+  for (int v = 0; v < s->n_nodes; v++) {
+    const double r = s->x[3*v];
+    x[3*v] = r > 0.0 ? c*r : r, x[3*v + 1] = s->x[3*v + 1], x[3*v + 2] = r > 0.0 ? d*r : 0.0;
+  }
+}
+
+/* a flat plate that is folded acts as the plate that was folded from the start, on the crease's inside and outside, and flat again as the flat one */
+static void a_crease_made_by_deformation_is_an_edge(void **state)
+{
+  Shape         flat = ShapePlate(4, 3, 16, 12, 0), folded = ShapePlate(4, 3, 16, 12, 0);
+  Proxy         p = FixtureProxy(&flat, 0.6, PROXY_KERNEL_HALF_SPACE, 1.0, NULL), restarted = FixtureProxy(&flat, 0.6, PROXY_KERNEL_HALF_SPACE, 1.0, NULL), q;
+  double       *x = (double *)malloc(3*sizeof(double)*(size_t)flat.n_nodes);
+  const double  at[3] = {-0.3, 0.1, 0.3}, before = FixturePhi(p, at, NULL);
+  unsigned long seed = 5;
+  (void)state;
+  for (int step = 1; step <= 9; step++) {
+    Fold(&flat, 10.0*step, x);
+    assert_petsc(ProxyUpdate(p, x, NULL));
+    assert_int_equal(p->n_samplings, step < 5 ? 1 : 2); // 45 degrees and more: once
+  }
+  assert_petsc(ProxyUpdate(p, x, NULL));
+  assert_int_equal(p->surface.n_patches, 2);
+  memcpy(folded.x, x, 3*sizeof(double)*(size_t)flat.n_nodes);
+  q = FixtureProxy(&folded, 0.6, PROXY_KERNEL_HALF_SPACE, 1.0, NULL);
+  for (int i = 0; i < 60; i++) {
+    double y[3];
+    for (int k = 0; k < 3; k++) y[k] = 1.6*(FixtureRandom(&seed) - 0.5);
+    const double phi = FixturePhi(p, y, NULL), one = SPHHalfSpace(SPH_CUBIC, y[2], 1.0), other = SPHHalfSpace(SPH_CUBIC, -y[0], 1.0);
+    assert_close(phi, FixturePhi(q, y, NULL), 0.04, 1.0); // behind the edge proxies have other places: sampled at 50 degrees
+    if (y[0] < 0.0 && y[2] > 0.0) assert_close(phi, one + other - one*other, 1e-12, 1.0); // in the corner: two planar walls
+  }
+
+  // a restart knows the crease from where the surface was sampled
+  const PetscReal *sampled;
+  assert_petsc(ProxyGetSampling(p, &sampled));
+  assert_petsc(ProxySetSampling(restarted, sampled));
+  assert_petsc(ProxyUpdate(restarted, x, NULL));
+  assert_int_equal(restarted->n, p->n);
+  assert_memory_equal(restarted->points, p->points, sizeof(ProxyPoint)*(size_t)p->n);
+  assert_petsc(ProxyUpdate(p, flat.x, NULL));
+  assert_int_equal(p->surface.n_patches, 1);
+  assert_close(FixturePhi(p, at, NULL), before, 1e-12, 1.0);
+  free(x);
+  assert_petsc(ProxyDestroy(&p));
+  assert_petsc(ProxyDestroy(&q));
+  assert_petsc(ProxyDestroy(&restarted));
+  ShapeFree(&flat);
+  ShapeFree(&folded);
+}
+
 CHECK_MAIN(cmocka_unit_test(rigid_motion_moves_phi_along_and_samples_nothing), cmocka_unit_test(areas_follow_and_sampling_waits_for_the_tolerance),
            cmocka_unit_test(an_inflated_ball_acts_as_the_larger_ball), cmocka_unit_test(velocities_are_interpolated),
-           cmocka_unit_test(a_restart_gives_the_same_proxies), cmocka_unit_test(ellipsoids_stretch_with_the_surface))
+           cmocka_unit_test(a_restart_gives_the_same_proxies), cmocka_unit_test(ellipsoids_stretch_with_the_surface),
+           cmocka_unit_test(a_crease_made_by_deformation_is_an_edge))
