@@ -111,7 +111,7 @@ PetscErrorCode CouplerAddNeighbours(Coupler c)
     PetscReal       lo[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[3] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL};
 
     if (o->moves || o->index || c->n_surfaces == 1) continue;
-    PetscCall(SurfaceIndexCreate(o->n_nodes, o->x, o->n_triangles, o->triangles, params->spacing, &o->index));
+    PetscCall(SurfaceIndexCreate(o->n_nodes, o->x, o->n_triangles, o->triangles, PROXY_NEIGHBOUR_REACH * params->support * params->spacing, &o->index));
     for (PetscInt i = 0; i < 3 * o->n_nodes; i++) {
       lo[i % 3] = PetscMin(lo[i % 3], o->x[i]);
       hi[i % 3] = PetscMax(hi[i % 3], o->x[i]);

@@ -37,6 +37,7 @@ BY_EXTERN PetscErrorCode ProxyGetParams(Proxy proxy, ProxyParams **params);
 BY_EXTERN PetscErrorCode ProxySetSurface(Proxy proxy, PetscInt n_nodes, const PetscReal X[], PetscInt n_triangles, const PetscInt triangles[]);
 /* density of one's own: kappa-bar of every node, > 0 (spacing h/(2 kappa-bar)), in place of curvature; copied; before SetUp */
 BY_EXTERN PetscErrorCode ProxySetDensity(Proxy proxy, const PetscReal kappa[]);
+#define PROXY_NEIGHBOUR_REACH 1.5 /* [h] reach of the index of a neighbour */
 /* obstacles on which the surface may come to lie: faces that do stop acting, as those on planar walls */
 BY_EXTERN PetscErrorCode ProxyAddNeighbour(Proxy proxy, SurfaceIndex index, const PetscReal min[3], const PetscReal max[3]);
 /* support radius h [m], spacing dx [m], kernel of the fluid; periodic box of the domain for minimal images */

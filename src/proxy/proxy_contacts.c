@@ -17,6 +17,7 @@ typedef struct {
   PetscInt  proxy;
   int       slot, image;
   ProxyPair pair;
+  double    exposed, grad_exposed[3]; /* when some lie on walls */
 } Touch;
 
 static int ChunkReserve(Chunk *c, PetscInt n_pairs)
@@ -203,7 +204,7 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
     D += q->w;
     lambda += q->w*q->lambda;
     z += q->w*q->z;
-    E += q->w*p->exposed[touch[i].proxy];
+    if (p->hides) E += q->w*touch[i].exposed;
     v->coverage += q->cover;
     for (int k = 0; k < 3; k++) {
       gD[k] += q->grad_w[k];
@@ -211,7 +212,7 @@ static void PatchMeans(const Proxy p, const double x[3], const double base[3], c
       gz[k] += q->grad_w[k]*q->z + q->w*q->grad_z[k];
       m[k] += q->w*b->n[k];
       for (int j = 0; j < 3; j++) gm[3*k + j] += b->n[k]*q->grad_w[j];
-      gE[k] += q->grad_w[k]*p->exposed[touch[i].proxy];
+      if (p->hides) gE[k] += q->grad_w[k]*touch[i].exposed + q->w*touch[i].grad_exposed[k];
       f[k] += q->w*(p->centre[3*touch[i].proxy + k] + shift[k] - x[k]);
       v->grad_coverage[k] += q->grad_cover[k];
     }
@@ -274,8 +275,21 @@ static int GatherHalfSpace(const Proxy p, const double x[3], const double base[3
   return z_min < p->fluid.h ? n : 0;
 }
 
+static void ExposeTouched(const Proxy p, const double x[3], const double base[3], Touch touch[], int n)
+{
+  ProxyFoot last;
+
+  last.neighbour = -1;
+  for (int i = 0; i < n; i++) {
+    double shift[3], at[3];
+    ImageShift(&p->fluid, base, touch[i].image, shift);
+    for (int k = 0; k < 3; k++) at[k] = x[k] - shift[k];
+    touch[i].exposed = ProxyExposureAt(p, touch[i].proxy, at, &last, touch[i].grad_exposed);
+  }
+}
+
 /* phi and the gradient's part of each patch at a particle */
-static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3], const Touch touch[], int n, int n_slots,
+static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3], Touch touch[], int n, int n_slots,
                            const PetscInt slots[], const double D[], int in_front, double grad[][3])
 {
   ProxyPatchValue value[PROXY_PATCHES];
@@ -295,6 +309,7 @@ static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3
     for (int k = 0; k < 3; k++) grad[0][k] = p->factor*(g[k] - lambda*gD[k])/D[0];
     return p->factor*lambda;
   }
+  if (p->hides) ExposeTouched(p, x, base, touch, n);
   for (int s = 0; s < n_slots; s++) {
     PatchMeans(p, x, base, touch, n, s, &value[s]);
     value[s].open = p->surface.patch_open[slots[s]];
@@ -336,9 +351,11 @@ static int Emit(Chunk *c, const Proxy p, PetscInt particle, const double x[3], c
 static int ParticleEllipsoid(Chunk *c, const Proxy p, PetscInt particle, const double x[3], const double base[3], PetscInt begin, PetscInt end,
                              Touch touch[], double grad[][3])
 {
-  double phi = 0.0;
-  int    n   = 0;
+  ProxyFoot last;
+  double    phi  = 0.0;
+  int       n    = 0;
 
+  last.neighbour = -1;
   for (PetscInt e = begin; e < end; e++) {
     const PetscInt    i = p->cells.entry[e]/27;
     const ProxyPoint *b = &p->points[i];
@@ -346,9 +363,16 @@ static int ParticleEllipsoid(Chunk *c, const Proxy p, PetscInt particle, const d
     ImageShift(&p->fluid, base, p->cells.entry[e]%27, shift);
     for (int k = 0; k < 3; k++) r[k] = x[k] - p->reach[i].x[k] - shift[k];
     if (OutOfReach(&p->reach[i], r)) continue;
-    const double part = p->exposed[i]*ProxyPairEllipsoid(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, grad[n]);
+    double part = ProxyPairEllipsoid(p->fluid.kernel, p->fluid.gradient_kernel, p->fluid.h, b, r, grad[n]);
     if (part == 0.0) continue;
-    for (int k = 0; k < 3; k++) grad[n][k] *= p->exposed[i];
+    if (p->hides) {
+      double at[3], slope[3];
+      for (int k = 0; k < 3; k++) at[k] = x[k] - shift[k];
+      const double exposed = ProxyExposureAt(p, i, at, &last, slope);
+      for (int k = 0; k < 3; k++) grad[n][k] = exposed*grad[n][k] + part*slope[k];
+      part *= exposed;
+      if (part == 0.0) continue;
+    }
     phi += part;
     touch[n].pair.w = part;
     touch[n].proxy  = i;

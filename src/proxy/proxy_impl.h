@@ -103,6 +103,13 @@ typedef struct {
   double       lo[3], hi[3]; /* its box and a spacing around it [m] */
 } ProxyNeighbour;
 
+/* foot of a particle on the neighbour that was asked last; -1 = none yet */
+typedef struct {
+  PetscInt    neighbour;
+  PetscBool   found;
+  SurfaceFoot foot;
+} ProxyFoot;
+
 typedef struct {
   int dummy;
 } ProxyOps;
@@ -132,8 +139,9 @@ struct _p_Proxy {
   ProxyReach   *reach;          /* n                                                                       */
   PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
   PetscReal    *centre;         /* n x 3 [m], middle of the triangles that each stands for: always inside its patch */
-  PetscReal    *exposed;        /* n: 1 in the open, 0 where it lies on a wall (proxy_wall.c)              */
-  PetscBool     hides;          /* one of them is below 1                                                  */
+  PetscReal    *exposed, *laid; /* n: 1 in the open, 0 on a planar wall; 0 in the open, 1 on an obstacle (proxy_wall.c) */
+  PetscInt     *lies_on;        /* n: on which neighbour                                                   */
+  PetscBool     hides;          /* one of them lies on something                                           */
   PetscInt      n_neighbours;
   ProxyNeighbour *neighbour;
   PetscReal    *node_velocity;  /* n_nodes x 3; NULL = at rest                                             */
@@ -185,6 +193,7 @@ PetscErrorCode ProxyPlaceDestroy(Proxy proxy);
 
 /* proxy_wall.c */
 void           ProxyExpose(Proxy proxy);
+double         ProxyExposureAt(const Proxy proxy, PetscInt j, const double x[3], ProxyFoot *last, double grad[3]);
 
 /* proxy_mask.c */
 /* support of a proxy as a cylinder around its normal: half height and radius [m] */

@@ -12,6 +12,7 @@ static PetscErrorCode Reserve(Proxy p, PetscInt n)
   PetscCall(PetscMalloc6(p->capacity, &p->active, p->capacity, &p->near, 3*p->capacity, &p->nodes, p->capacity, &p->patch, 3*p->capacity, &p->weights, p->capacity, &p->kappa));
   PetscCall(PetscMalloc7(3*p->capacity, &p->x, 3*p->capacity, &p->normal, p->capacity, &p->area, 3*p->capacity, &p->velocity, 3*p->capacity, &p->force, 3*p->capacity,
                          &p->centre, p->capacity, &p->exposed));
+  PetscCall(PetscMalloc2(p->capacity, &p->laid, p->capacity, &p->lies_on));
   PetscCall(PetscArrayzero(p->force, 3*p->capacity));
   PetscCall(PetscArrayzero(p->points, p->capacity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -23,6 +24,7 @@ PetscErrorCode ProxyPlaceDestroy(Proxy p)
   PetscCall(PetscFree2(p->reach, p->points));
   PetscCall(PetscFree6(p->active, p->near, p->nodes, p->patch, p->weights, p->kappa));
   PetscCall(PetscFree7(p->x, p->normal, p->area, p->velocity, p->force, p->centre, p->exposed));
+  PetscCall(PetscFree2(p->laid, p->lies_on));
   p->capacity = p->n = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,7 +19,7 @@ static double Exposure(double gap, double cosine)
 
   Input Parameters:
 + proxy - the proxies that give way there
-. index - the obstacle, asked up to one spacing; borrowed, must outlive the proxies
+. index - the obstacle, made for questions up to PROXY_NEIGHBOUR_REACH h; borrowed, must outlive the proxies
 . min   - lower corner of the obstacle's box [m]
 - max   - upper corner
 @*/
@@ -50,25 +50,26 @@ static double ExposedToPlanes(const ProxyFluid *fluid, const double x[3], const 
   return exposed;
 }
 
-/* asked from a little within the surface: on the obstacle its edges have no direction */
-static double ExposedToNeighbours(const Proxy p, const double x[3], const double n[3])
+/* The least exposure that obstacles leave, and which does. Asked from a little within the surface: on the obstacle its edges have no direction. */
+static double ExposedToNeighbours(const Proxy p, const double x[3], const double n[3], PetscInt *which)
 {
   const double within = 0.1*p->fluid.dx, at[3] = {x[0] - within*n[0], x[1] - within*n[1], x[2] - within*n[2]};
-  double       exposed = 1.0;
+  double       least = 1.0;
 
+  *which = 0;
   for (PetscInt i = 0; i < p->n_neighbours; i++) {
     const ProxyNeighbour *o  = &p->neighbour[i];
     int                   in = 1;
     SurfaceFoot           foot;
     for (int k = 0; k < 3; k++) in &= x[k] > o->lo[k] && x[k] < o->hi[k];
     if (!in || !SurfaceIndexNearest(o->index, at, p->fluid.dx, &foot) || fabs(foot.distance) < 1e-6*p->fluid.dx) continue;
-    const double cosine = -Dot3(foot.normal, n);
-    exposed *= Exposure((foot.distance - within*cosine)/p->fluid.dx, cosine);
+    const double cosine = -Dot3(foot.normal, n), exposed = Exposure((foot.distance - within*cosine)/p->fluid.dx, cosine);
+    if (exposed < least) least = exposed, *which = i;
   }
-  return exposed;
+  return least;
 }
 
-/* exposed[] of the proxies in use where they are */
+/* exposures of the proxies in use where they are */
 void ProxyExpose(Proxy p)
 {
   int hidden = 0;
@@ -76,9 +77,37 @@ void ProxyExpose(Proxy p)
 #pragma omp parallel for schedule(static) reduction(| : hidden)
   for (PetscInt j = 0; j < p->n; j++) {
     const double *x = &p->x[3*j], *n = &p->normal[3*j];
-    p->exposed[j]   = ExposedToPlanes(&p->fluid, x, n);
-    if (p->n_neighbours && p->exposed[j] > 0.0) p->exposed[j] *= ExposedToNeighbours(p, x, n);
-    hidden |= p->exposed[j] < 1.0;
+    p->exposed[j]  = ExposedToPlanes(&p->fluid, x, n);
+    p->laid[j]     = 0.0;
+    if (p->n_neighbours) p->laid[j] = 1.0 - ExposedToNeighbours(p, x, n, &p->lies_on[j]);
+    hidden |= p->exposed[j] < 1.0 || p->laid[j] > 0.0;
   }
   p->hides = (PetscBool)hidden;
+}
+
+/* Exposure of proxy j to a particle at x, in the frame of the proxies, and its gradient. A planar wall goes on for ever. An obstacle does not: where its
+   surface ends with that of the body, as at a gate under a wall of its own thickness, the body's edge is there for the water, and the union of both
+   is nearly right with all faces. So an obstacle hides a face from those particles that are in front of it, whose feet on it have a normal
+   against that of the face. The gradient of a normal is that of the direction to an edge or a vertex, 0 on a face. */
+double ProxyExposureAt(const Proxy p, PetscInt j, const double x[3], ProxyFoot *last, double grad[3])
+{
+  double slope;
+
+  for (int k = 0; k < 3; k++) grad[k] = 0.0;
+  if (p->laid[j] == 0.0) return p->exposed[j];
+  if (last->neighbour != p->lies_on[j]) {
+    last->neighbour = p->lies_on[j];
+    last->found     = SurfaceIndexNearest(p->neighbour[last->neighbour].index, x, PROXY_NEIGHBOUR_REACH*p->fluid.h, &last->foot);
+  }
+  if (!last->found) return p->exposed[j];
+  const SurfaceFoot *f = &last->foot;
+  const double      *n = &p->normal[3*j], cosine = -Dot3(n, f->normal), front = ProxySmoothStep((cosine - 0.3)/0.6, &slope);
+  if (f->kind < 2 && slope != 0.0 && f->distance != 0.0) {
+    const double along = f->kind == 1 ? Dot3(n, f->along) : 0.0;
+    for (int k = 0; k < 3; k++) {
+      const double turn = -(n[k] - (f->kind == 1 ? along*f->along[k] : 0.0) + cosine*f->normal[k])/f->distance; // gradient of the cosine
+      grad[k] = -p->exposed[j]*p->laid[j]*slope/0.6*turn;
+    }
+  }
+  return p->exposed[j]*(1.0 - p->laid[j]*front);
 }

@@ -92,14 +92,20 @@ static void obstacles_are_lain_on(void **state)
   assert_int_equal(roof.n_triangles, 12);
   for (int i = 0; i < 36; i++) triangles[i] = roof.triangles[i];
   for (int v = 0; v < roof.n_nodes; v++) roof.x[3*v + 2] -= 3.0;
-  assert_petsc(SurfaceIndexCreate(roof.n_nodes, roof.x, roof.n_triangles, triangles, 0.5, &index));
+  assert_petsc(SurfaceIndexCreate(roof.n_nodes, roof.x, roof.n_triangles, triangles, 1.5, &index));
   assert_petsc(ProxyAddNeighbour(p, index, lo, hi));
   ProxyExpose(p);
   assert_true(p->hides && q->hides);
   assert_int_equal(p->n, q->n);
+  for (int i = 0; i < 25; i++) {
+    double x[3], g[3], f[3];
+    FootPoint(i, x);
+    assert_close(FixturePhi(p, x, g), FixturePhi(q, x, f), 1e-12, 1.0);
+    for (int k = 0; k < 3; k++) assert_close(g[k], f[k], 1e-12, 1.0);
+  }
   for (PetscInt i = 0; i < p->n; i++) {
-    assert_close(p->exposed[i], q->exposed[i], 1e-12, 1.0);
-    assert_true(p->exposed[i] == (p->normal[3*i + 2] < -0.9 ? 0.0 : 1.0));
+    assert_close(1.0 - p->laid[i], q->exposed[i], 1e-12, 1.0);
+    assert_true(q->exposed[i] == (p->normal[3*i + 2] < -0.9 ? 0.0 : 1.0));
   }
   assert_petsc(ProxyDestroy(&p));
   assert_petsc(ProxyDestroy(&q));
