@@ -234,8 +234,7 @@ PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
     PetscCall(SPHGetTimeStep(c->sph, &dt_fluid));
     PetscCall(CouplerLimitStep(c, &dt_fluid));
     /* two equal steps rather than a full and a tiny one before an output */
-    if (dt_max < 2.0 * dt_fluid && dt_max > dt_fluid) *dt = 0.5 * dt_max;
-    else *dt = PetscMin(dt_max, dt_fluid);
+    if (dt_max > (1.0 + 1e-9) * dt_fluid) *dt = dt_max < 2.0 * dt_fluid ? 0.5 * dt_max : dt_fluid; /* 1e-9: a fixed step stays one */
     ByCall(CouplerCoupledStep(c, *dt));
     PetscCall(SPHGetStats(c->sph, &stats));
     c->iterations_sum += stats.iterations;
