@@ -230,7 +230,7 @@ typedef struct {
   PetscReal speed_max, speed_rms;  /* [m/s]                                                                */
   PetscReal viscous_loss;          /* [J] since the start                                                  */
   PetscReal wall_work, frame_work; /* [J] done on the fluid since the start by planes that move, and by the motion of the tank */
-  PetscInt  iterations;            /* of the last pressure solve                                           */
+  PetscInt  iterations;            /* operator applications of all pressure solves of the last step        */
   PetscInt  viscous_solves, viscous_iterations; /* implicit viscosity, by this process since its start     */
   PetscBool converged;             /* of the last pressure solve                                           */
   PetscReal body_force[3];         /* of the mean-velocity controller [m/s^2]                              */

@@ -256,7 +256,7 @@ PetscErrorCode SPHGetStats(SPH sph, SPHStats *stats)
   stats->viscous_loss     = sph->viscous_loss;
   stats->wall_work        = sph->wall_work;
   stats->frame_work       = sph->frame_work;
-  stats->iterations       = sph->iterations;
+  stats->iterations       = sph->iterations_before + sph->iterations;
   stats->viscous_solves     = sph->viscous_solves;
   stats->viscous_iterations = sph->viscous_iterations;
   stats->converged        = sph->converged;

@@ -191,7 +191,7 @@ struct _p_SPH {
   PetscReal wall_force[18];          /* [N]                                              */
   PetscInt  n_patches;
   SPHPatch *patches;                 /* n_patches                                        */
-  PetscInt  iterations;
+  PetscInt  iterations, iterations_before; /* of the current pressure solve, of earlier ones of the step */
   PetscBool converged;
   char      breakdown[512];
 };

@@ -146,6 +146,7 @@ PetscErrorCode SPHSolvePressure(SPH sph, PetscReal dt, SPHResponse response, voi
   PetscCheck(!response || sph->method->responds, PetscObjectComm((PetscObject)sph), PETSC_ERR_SUP, "solver %s takes no response of compliant walls: ask SPHGetSolver()", sph->method->name);
   PetscCall(PetscLogEventBegin(SPH_Pressure, sph, 0, 0, 0));
   PetscCall(SPHWallRate_Internal(sph));
+  sph->iterations_before += sph->iterations;
   sph->iterations = 0;
   ByCall(sph->method->Solve(sph, &op));
   if (sph->n_openings) SPHOpenPressure_Internal(sph);

@@ -114,6 +114,7 @@ PetscErrorCode SPHPredict(SPH sph, PetscReal dt)
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(SPH_Predict, sph, 0, 0, 0));
+  sph->iterations = sph->iterations_before = 0;
   if (Norm3(sph->params.mean_velocity) > 0) ControlMeanVelocity(sph, dt);
   SPHMovePlanes_Internal(sph, dt);
   for (int k = 0; k < 3; k++) a[k] = sph->gravity[k];
