@@ -9,6 +9,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
+from coupling_ladder import piston, plate_ladder
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
@@ -19,6 +20,8 @@ SECTIONS = (
     ("hydrostatic_plate", "A column of water on an elastic plate", hydrostatic_plate),
     ("gate", "A dam breaks through an elastic gate", gate),
     ("obstacle", "A dam breaks on an elastic obstacle", obstacle),
+    ("piston", "Added mass: a piston under a column", piston),
+    ("plate_ladder", "Added mass: a clamped plate under a column", plate_ladder),
 )
 
 HEAD = """# Water and bodies against what is known
