@@ -9,6 +9,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
+from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
@@ -22,6 +23,7 @@ SECTIONS = (
     ("obstacle", "A dam breaks on an elastic obstacle", obstacle),
     ("piston", "Added mass: a piston under a column", piston),
     ("plate_ladder", "Added mass: a clamped plate under a column", plate_ladder),
+    ("hard", "Hard cases", hard),
 )
 
 HEAD = """# Water and bodies against what is known

@@ -242,6 +242,8 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
   struct rusage            usage;
   PetscReal                work_fluid = 0.0, work_solid = 0.0, work_exchanged = 0.0, drift = 0.0, cpu = 0.0;
   char                     device[256];
+  const char              *reason;
+  PetscBool                broken;
 
   PetscFunctionBegin;
   getrusage(RUSAGE_SELF, &usage);
@@ -249,6 +251,11 @@ PetscErrorCode CouplerResultsSummary(Coupler c, CouplerResults *r, const char st
   PetscCall(BackendGetDevice(&n_devices, device, sizeof(device)));
   ByCall(JsonCreate(r->directory, "summary.json", &json));
   PetscCall(JsonString(json, "status", status));
+  PetscCall(PetscStrcmp(status, "breakdown", &broken));
+  if (broken) {
+    PetscCall(CouplerGetBreakdown(c, &reason));
+    PetscCall(JsonString(json, "reason", reason));
+  }
   PetscCall(JsonInt(json, "steps", c->step));
   PetscCall(JsonReal(json, "time_end", c->time));
   PetscCall(JsonReal(json, "wall_seconds", wall_seconds));

@@ -1,0 +1,10 @@
+// A slab of 1 x 1 x 0.25 in 16 x 16 x 4 cells.
+// gmsh -3 -nt 1 -format msh41 hard_slab.geo -o hard_slab.msh
+Point(1) = {0, 0, 0};
+line[] = Extrude {1, 0, 0} { Point{1}; Layers{{16}, {1}}; };
+side[] = Extrude {0, 1, 0} { Line{line[1]}; Layers{{16}, {1}}; };
+solid[] = Extrude {0, 0, 0.25} { Surface{side[1]}; Layers{{4}, {1}}; };
+Physical Volume("solid") = {solid[1]};
+Physical Surface("bottom") = {side[1]};
+Physical Surface("top") = {solid[0]};
+Physical Surface("sides") = {solid[2], solid[3], solid[4], solid[5]};
