@@ -6,7 +6,7 @@
   TLEDStrain_Private - strain energy [J], current volume [m^3] and the extremes of deformation at displacement u
 
   Output Parameter (each may be NULL):
-+ energy  - sum_e V0_e W
++ energy  - sum_e V0_e W; a part that is inside out, as the state at a breakdown may have some, has none
 . volume  - sum_e V0_e J
 - stretch - smallest det F, largest |F|^2 of all elements
 */
@@ -32,7 +32,7 @@ PetscErrorCode TLEDStrain_Private(TLED tled, const PetscReal u[], PetscReal *ene
       const double J = 1.0 + p.jm1;
       for (int i = 0; i < 9; i++) F2 += p.H[i] * p.H[i];
       F2 += 2.0 * (p.H[0] + p.H[4] + p.H[8]);
-      if (energy) q[0] += p.V0 * TLEDLocalEnergy_Private(w, l, k % b->n_points, &p.law, p.seen);
+      if (energy && J > 0.0) q[0] += p.V0 * TLEDLocalEnergy_Private(w, l, k % b->n_points, &p.law, p.seen);
       q[1] += p.V0 * J;
       q[2] = J < q[2] ? J : q[2];
       q[3] = F2 > q[3] ? F2 : q[3];
