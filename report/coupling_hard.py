@@ -51,11 +51,9 @@ def on_sheet(young, pool, block, velocity):
 
 
 def squeezed():
-    made = tank(0.12)
-    made["domain"]["moving"] = ["left", "right"]
-    for name, wall, way in (("left", "xmin", 0.05), ("right", "xmax", -0.05)):
-        made["domain"][name] = {"walls": [wall], "translation": [way, 0, 0], "course": "ramp", "duration": 0.25}
-    return with_block(made, "cube", [0.04, 0.04, 0.02], scale=0.16, contact=["xmin", "xmax", "zmin"])
+    """a block pressed flat in a pit that it fills nearly: it bulges against floor and four walls, and the water has to leave"""
+    return with_block(tank(0.14), "cube", [0.02, 0.02, 0.004], scale=0.2, young=5e4, poisson=0.45, density=1000, loads=["press"],
+                      press={"groups": ["top"], "traction": [0, 0, -2.5e4], "course": "ramp", "duration": 0.2})
 
 
 def three_faces():
@@ -73,7 +71,7 @@ CASES = (  # name, scene, simulated time
     *((f"Young's modulus {young:.0e} Pa".replace("e+0", "e").replace("e+", "e"), drop(density=1000, young=young), 0.4 if young < 1e8 else 0.2 if young < 1e10 else 0.06) for young in (1e3, 1e5, 1e7, 1e9, 1e11)),
     ("sheet of 0.24 dx between water and water", on_sheet(1e7, 0.08, {"min": [0, 0, 0.13], "max": [SIDE, SIDE, 0.21]}, 0), 0.4),
     ("jet of 30 m/s on a membrane of 0.24 dx", on_sheet(1e9, 0, {"min": [0.08, 0.08, 0.12], "max": [0.16, 0.16, 0.3]}, 30), 0.012),
-    ("squeezed between walls in water", squeezed(), 0.4),
+    ("squeezed between five walls in water", squeezed(), 0.4),
     ("leaves the water and comes back", with_block(tank(0.2), "cube", [0.08, 0.08, 0.02], scale=0.08, density=100), 0.7),
     ("needle triangles, 100:1", drop("needles"), 0.4),
     ("triangles of 6 dx and 0.1 dx", drop("graded", scale=0.12), 0.4),
