@@ -73,7 +73,7 @@ PetscErrorCode CouplerAddBody(Coupler coupler, const char name[], TLED tled, Pro
   s->tled  = tled;
   s->proxy = proxy;
   PetscCall(TLEDGetSize(tled, &s->n_nodes, &n_tets));
-  PetscCall(PetscCalloc6(3 * s->n_nodes, &s->force, 3 * s->n_nodes, &s->start, 3 * s->n_nodes, &s->mean_velocity, 3 * s->n_nodes, &s->wall_velocity,
+  PetscCall(PetscCalloc7(3 * s->n_nodes, &s->force, 3 * s->n_nodes, &s->last_force, 3 * s->n_nodes, &s->start, 3 * s->n_nodes, &s->mean_velocity, 3 * s->n_nodes, &s->wall_velocity,
                          3 * s->n_nodes, &s->answer, 3 * s->n_nodes, &s->seen));
   coupler->n_bodies++;
   coupler->n_surfaces++;
@@ -196,7 +196,8 @@ PetscErrorCode CouplerUpdateContacts(Coupler c)
       PetscCall(PetscFree2(s->proxy_force, s->proxy_work));
       PetscCall(PetscMalloc2(3 * s->capacity, &s->proxy_force, 3 * s->capacity, &s->proxy_work));
     }
-    c->contacts[k].force = s->proxy_force;
+    c->contacts[k].force       = s->proxy_force;
+    c->contacts[k].coefficient = s->tled ? c->params.contact_coefficient : 1.0;
   }
   PetscCall(SPHSetContacts(c->sph, c->n_surfaces, c->contacts));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -229,6 +230,7 @@ PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
     PetscReal dt_fluid;
     SPHStats  stats;
 
+    if (!c->step) PetscCall(CouplerGetBalance(c, &c->balance_start));
     ByCall(SPHUpdateNeighbors(c->sph));
     PetscCall(CouplerTimer(c, PHASE_NEIGHBOURS));
     PetscCall(SPHGetTimeStep(c->sph, &dt_fluid));
@@ -260,6 +262,7 @@ PetscErrorCode CouplerView(Coupler c, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(PetscViewerASCIIPrintf(viewer, "Coupler: %" PetscInt_FMT " bodies, %" PetscInt_FMT " obstacles\n", c->n_bodies, c->n_surfaces - c->n_bodies));
   if (c->sph) PetscCall(SPHView(c->sph, viewer));
+  PetscCall(CouplerViewSchemes(c, viewer));
   for (PetscInt k = 0; k < c->n_surfaces; k++) {
     if (c->surface[k].tled) PetscCall(TLEDView(c->surface[k].tled, viewer));
     if (c->surface[k].proxy) PetscCall(ProxyView(c->surface[k].proxy, viewer));
@@ -334,7 +337,7 @@ PetscErrorCode CouplerDestroy(Coupler *coupler)
     PetscCall(PetscFree2(s->x, s->triangles));
     PetscCall(PetscFree3(s->x_rest, s->x_next, s->v_nodes));
     PetscCall(MotionDestroy(&s->motion));
-    PetscCall(PetscFree6(s->force, s->start, s->mean_velocity, s->wall_velocity, s->answer, s->seen));
+    PetscCall(PetscFree7(s->force, s->last_force, s->start, s->mean_velocity, s->wall_velocity, s->answer, s->seen));
     PetscCall(PetscFree2(s->proxy_force, s->proxy_work));
     PetscCall(PetscFree(s->interface));
     PetscCall(PetscFree(s->arm));

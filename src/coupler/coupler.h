@@ -11,6 +11,7 @@
 typedef struct _p_Coupler *Coupler;
 
 typedef enum { COUPLER_SCHEME_AUTO, COUPLER_SCHEME_EXPLICIT, COUPLER_SCHEME_ITERATED, COUPLER_SCHEME_MASS } CouplerScheme;
+typedef enum { COUPLER_FORCES_HELD, COUPLER_FORCES_INTERPOLATED } CouplerForces;
 typedef enum {
   PROBE_DISPLACEMENT, /* of a body's material point [m], 3 columns                     */
   PROBE_VELOCITY,     /* of a body's point, or of the water at a place [m/s]           */
@@ -79,6 +80,8 @@ typedef struct {
   PetscInt  reuse;          /* steps whose differences the quasi-Newton iteration keeps               */
   PetscReal tolerance;      /* relative change of the interface's velocity at which iterations end    */
   PetscInt  iterations;     /* most pressure solves a step of `iterated`                              */
+  int       forces;         /* CouplerForces                                                          */
+  PetscReal contact_coefficient; /* K_c of the paper: contact forces of bodies are scaled by it       */
 } CouplerParams;
 
 typedef struct {
@@ -149,6 +152,8 @@ typedef struct {
   PetscReal fluid_kinetic, fluid_potential, fluid_viscous_loss;
   PetscReal solid_kinetic, solid_strain, solid_potential, solid_damping_loss;
   PetscReal work_fluid, work_solid;            /* at the interface since the start, as each side sees it [J] */
+  PetscReal energy;                            /* of fluid and bodies, contact included [J]                  */
+  PetscReal energy_error;                      /* what it has gained since the start beyond works and losses that are booked [J] */
   PetscReal work_exchanged;                    /* sum over bodies and steps of the fluid's absolute work at the interface [J] */
   PetscInt  solves;                            /* pressure solves of the last step                           */
   PetscReal interface_residual;                /* velocity of body less what the fluid has seen of it, rms over its rms; last step */

@@ -17,6 +17,7 @@ typedef struct {
   Vec       rhs, solution;
   PetscReal dt;     /* [s] step for which the matrix was made; 0 = none yet */
   PetscReal dt_step; /* [s] the current step                                 */
+  PetscReal *at;     /* n x 3 [m] displacement of which it is made            */
   PetscInt  age;     /* steps since the matrix was made                      */
 } CouplerResponse;
 
@@ -27,6 +28,7 @@ typedef struct {
   PetscInt        n_nodes;
   PetscReal      *x;             /* n x 3 positions of an obstacle; NULL for a body                        */
   CouplerScheme   scheme;        /* of a body                                                              */
+  PetscReal       water, stiffness; /* mass of water that the body must move over its own; (omega dt)^2 of its softest motion; negative = not asked for */
   PetscBool       touched, answers, iterates; /* this step: by water; within the pressure solve; is run until both sides agree */
   PetscInt        n_interface, interface_start, *interface; /* nodes of the wetted surface, their place in the interface's vector */
   PetscBool       slip, moves;   /* an obstacle along which fluid slips, one that moves                    */
@@ -37,6 +39,7 @@ typedef struct {
   PetscInt        n_triangles;
   SurfaceIndex    index;         /* of an obstacle at rest, on which others may lie                         */
   PetscReal      *force;         /* n x 3 [N] forces of the fluid on the nodes, last step                  */
+  PetscReal      *last_force;    /* n x 3 [N] those of the step before                                     */
   PetscReal      *start;         /* n x 3 [m] displacement at the start of the step                        */
   PetscReal      *mean_velocity; /* n x 3 [m/s] of the surface over the step                               */
   PetscReal      *wall_velocity; /* n x 3 [m/s] what the fluid sees, less the response to the new forces   */
@@ -47,6 +50,7 @@ typedef struct {
   PetscInt        capacity;      /* proxies allocated                                                      */
   PetscReal      *arm;           /* per touched particle, 3: couple of its pairs' shares about their proxies; of bodies that answer */
   PetscInt        n_arms;        /* allocated                                                              */
+  PetscReal       work_step, work_force; /* [J] of the forces on the body: in this step, and since the start without stops */
   PetscReal       work_fluid, work_solid, work_exchanged; /* [J] since the start; the last is the sum of the fluid's absolute works */
   PetscReal       total[3];      /* [N] of the last step                                                   */
   PetscInt        substeps;      /* of the last step                                                       */
@@ -89,6 +93,7 @@ struct _p_Coupler {
   PetscReal     *interface, *residual; /* [m/s] its velocity and residual         */
   struct Relaxation *relaxation;
   PetscInt       solves, n_unsettled;  /* pressure solves of the last step; steps whose iterations did not settle */
+  PetscReal      balance_start;       /* [J] of CouplerGetBalance() at the start                                   */
   PetscReal      mismatch, solves_sum, mismatch_sum; /* relative residual of the last step; sums over all steps   */
   PetscReal      time, dt, mass;   /* mass of a particle [kg]                      */
   PetscReal      rest_density;
@@ -115,12 +120,17 @@ PETSC_INTERN PetscErrorCode CouplerBuildFluid(Coupler coupler, const DomainParam
 /* scheme_mass.c */
 PETSC_INTERN PetscErrorCode CouplerArms(Coupler coupler, PetscInt k);
 PETSC_INTERN PetscErrorCode CouplerResponseSetUp(Coupler coupler, CouplerSurface *s, PetscReal dt);
+PETSC_INTERN PetscErrorCode CouplerResponseMake(Coupler coupler, CouplerSurface *s, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], PetscReal velocity[]);
 PETSC_INTERN PetscErrorCode CouplerResponseApply(void *coupler, PetscInt n, const PetscReal p[], PetscReal Ap[]);
 PETSC_INTERN PetscErrorCode CouplerResponseDestroy(CouplerResponse *response);
 /* scheme_select.c */
 PETSC_INTERN PetscErrorCode CouplerSelectSchemes(Coupler coupler);
 PETSC_INTERN const char    *CouplerSchemeName(Coupler coupler); /* of the body that needs most */
+PETSC_INTERN const char    *CouplerBodyScheme(const CouplerSurface *s);
+PETSC_INTERN PetscErrorCode CouplerViewSchemes(Coupler coupler, PetscViewer viewer);
+/* coupler_ledger.c */
+PETSC_INTERN PetscErrorCode CouplerGetBalance(Coupler coupler, PetscReal *balance);
 /* scheme_iterated.c */
 PETSC_INTERN PetscErrorCode CouplerNumberInterface(Coupler coupler);
 PETSC_INTERN PetscErrorCode CouplerCoupledStep(Coupler coupler, PetscReal dt);
@@ -134,7 +144,7 @@ PETSC_INTERN PetscErrorCode CouplerBaseVelocity(CouplerSurface *s);
 PETSC_INTERN PetscErrorCode CouplerSolveFluid(Coupler coupler, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerAdvanceBody(Coupler coupler, CouplerSurface *s, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerReturnBody(CouplerSurface *s);
-PETSC_INTERN void           CouplerAddWork(CouplerSurface *s, PetscReal dt);
+PETSC_INTERN void           CouplerAddWork(Coupler coupler, CouplerSurface *s, PetscReal dt);
 PETSC_INTERN PetscErrorCode CouplerAngularMomentum(CouplerSurface *s, PetscReal L[3], PetscReal center[3]);
 PETSC_INTERN PetscErrorCode CouplerAddRotation(CouplerSurface *s, const PetscReal lost[3]);
 PETSC_INTERN void           CouplerMoment(PetscInt n, const PetscReal x[], const PetscReal f[], PetscReal moment[3]);

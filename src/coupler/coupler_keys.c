@@ -11,6 +11,7 @@ static const char *const axis_names[]   = {"x", "y", "z", NULL};
 static const char *const shape_names[]  = {"box", "sphere", "cylinder", NULL};
 static const char *const field_names[]  = {"uniform", "taylor_green", "rotation", "shear", "strain", NULL};
 static const char *const scheme_names[] = {"auto", "explicit", "iterated", "mass", NULL};
+static const char *const force_names[]  = {"held", "interpolated", NULL};
 static const char *const relaxations[]  = {"iqn_ils", "aitken", NULL};
 static const char *const kinds[]        = {"static", "dynamic", "both", "implicit", "none", NULL};
 static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", "surface", "flow_rate", "power", NULL};
@@ -85,6 +86,8 @@ const Key CouplerKeys[] = {
   {"reuse",          KEY_INT,    ROW(CouplerParams, reuse),          "1", "3", 0, 50, 0, NULL, "steps whose differences iqn_ils keeps"},
   {"tolerance",      KEY_REAL,   ROW(CouplerParams, tolerance),      "1", "1e-3", 0, 1, 0, NULL, "iterations end when the interface's mean velocity over the step, of fluid and body, agree by this, relative, rms"},
   {"iterations",     KEY_INT,    ROW(CouplerParams, iterations),     "1", "20", 1, 1000, 0, NULL, "most pressure solves a step of scheme iterated"},
+  {"forces",         KEY_CHOICE, ROW(CouplerParams, forces),         "",  "held", 0, 0, 0, force_names, "of the fluid on a body over its substeps: constant, or linear through the change since the last step; the impulse is the same"},
+  {"contact_coefficient", KEY_REAL, ROW(CouplerParams, contact_coefficient), "1", "1", 0, 10, KEY_LO_OPEN, NULL, "K_c: contact forces on elastic bodies and their reaction on the fluid are scaled by it; 1 = as the pressure gives them"},
   KEY_END};
 
 const Key ProbeKeys[] = {

@@ -253,14 +253,21 @@ PetscErrorCode CouplerArriveObstacles(Coupler c, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* no node of an obstacle moves farther in a step than the fluid's particles may */
+/* no node of a surface moves farther in a step than the fluid's particles may; of bodies as they moved in the last one */
 PetscErrorCode CouplerLimitStep(Coupler c, PetscReal *dt)
 {
   SPHParams *params;
+  PetscReal  speed2 = 0.0;
 
   PetscFunctionBegin;
   PetscCall(SPHGetParams(c->sph, &params));
   if (params->time_step > 0.0) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < c->n_bodies; k++) {
+    const CouplerSurface *s = &c->surface[k];
+
+    for (PetscInt j = 0; j < s->n_interface; j++) speed2 = PetscMax(speed2, Dot3(s->mean_velocity + 3 * s->interface[j], s->mean_velocity + 3 * s->interface[j]));
+  }
+  if (speed2 > 0.0) *dt = PetscMin(*dt, params->cfl * params->spacing / PetscSqrtReal(speed2));
   for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++) {
     CouplerSurface *s       = &c->surface[k];
     PetscReal       fastest = 0.0;

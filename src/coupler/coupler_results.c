@@ -14,7 +14,7 @@ static const char *const ledger_headers[] = {
   "fluid_speed_rms [m/s]", "solid_volume [m^3]",
   "solid_contact_energy [J]", "solid_external_work [J]", "work_motion [J]",
   "fluid_particles [1]", "fluid_entered [m^3]", "fluid_left [m^3]",
-  "work_exchanged [J]", "solves [1]", "interface_residual [1]"};
+  "work_exchanged [J]", "solves [1]", "interface_residual [1]", "energy [J]", "energy_error [J]"};
 
 enum { N_LEDGER = sizeof(ledger_headers) / sizeof(ledger_headers[0]) };
 
@@ -78,7 +78,7 @@ static PetscErrorCode WriteLedger(Coupler c, CouplerResults *r)
                                    l.work_solid, l.momentum[0], l.momentum[1], l.momentum[2], l.angular[0], l.angular[1], l.angular[2],
                                    l.speed_max, l.speed_rms, l.solid_volume, l.solid_contact_energy,
                                    l.solid_external_work, l.work_motion, (PetscReal)l.fluid_particles, l.fluid_entered, l.fluid_left,
-                                   l.work_exchanged, (PetscReal)l.solves, l.interface_residual};
+                                   l.work_exchanged, (PetscReal)l.solves, l.interface_residual, l.energy, l.energy_error};
   ByCall(TableWrite(r->ledger, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -221,6 +221,11 @@ static PetscErrorCode SummaryBodies(Coupler c, Json json)
       PetscCall(JsonInt(json, "tets", n_tets));
       PetscCall(TLEDGetAddedMass(s->tled, NULL, &added));
       PetscCall(JsonReal(json, "added_mass_percent", added));
+      if (c->sph) {
+        PetscCall(JsonString(json, "scheme", CouplerBodyScheme(s)));
+        PetscCall(JsonReal(json, "water_over_mass", s->water));
+        if (s->stiffness >= 0.0) PetscCall(JsonReal(json, "omega_dt", PetscSqrtReal(s->stiffness)));
+      }
     }
     PetscCall(JsonReal(json, "proxies_mean", s->n_proxies_sum / PetscMax(1, c->step)));
     if (s->tled) {

@@ -158,6 +158,7 @@ static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
   ByCall(SceneWrite(scene, path));
   PetscCall(SceneGetText(scene, &run->scene_text));
   ByCall(CouplerResultsCreate(c, run->params.directory, run->scene_text, run->same_directory, &run->results));
+  PetscCall(CouplerViewSchemes(c, PETSC_VIEWER_STDOUT_SELF));
   PetscCall(ProgressCreate(&run->progress));
   if (!resume) {
     if (c->sph) {

@@ -2,11 +2,46 @@
 #include "coupler_impl.h"
 #include "relaxation.h"
 
+/* the response is made anew every so many steps: where and when it was made last */
+static PetscErrorCode SaveResponse(Checkpoint file, CouplerSurface *s)
+{
+  const CouplerResponse *r        = &s->response;
+  const PetscReal        clock[2] = {r->dt, (PetscReal)r->age};
+  char                   name[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/response", s->name));
+  ByCall(CheckpointWriteReal(file, name, 2, clock));
+  if (!(r->dt > 0.0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/response_at", s->name));
+  ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, r->at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadResponse(Coupler c, Checkpoint file, CouplerSurface *s)
+{
+  CouplerResponse *r = &s->response;
+  PetscReal        clock[2];
+  char             name[2 * BY_NAME_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/response", s->name));
+  ByCall(CheckpointReadReal(file, name, 2, clock));
+  r->dt  = clock[0];
+  r->age = (PetscInt)clock[1];
+  if (!(r->dt > 0.0)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!r->at) PetscCall(PetscMalloc1(3 * s->n_nodes, &r->at));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/response_at", s->name));
+  ByCall(CheckpointReadReal(file, name, 3 * s->n_nodes, r->at));
+  PetscCall(CouplerResponseMake(c, s, r->dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
 {
   Vec              vec[3];
   const PetscReal *values;
-  PetscReal        sums[5], *state;
+  PetscReal        sums[7], *state;
   PetscInt         n_state;
   const char      *names[] = {"displacement", "velocity"};
   char             name[2 * BY_NAME_MAX];
@@ -37,8 +72,13 @@ static PetscErrorCode SaveBody(Checkpoint file, CouplerSurface *s)
   sums[2] = s->n_substeps_sum;
   sums[3] = s->n_proxies_sum;
   sums[4] = s->work_exchanged;
+  sums[5] = s->work_force;
+  sums[6] = (PetscReal)s->scheme;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
-  ByCall(CheckpointWriteReal(file, name, 5, sums));
+  ByCall(CheckpointWriteReal(file, name, 7, sums));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/mean_velocity", s->name));
+  ByCall(CheckpointWriteReal(file, name, 3 * s->n_nodes, s->mean_velocity));
+  ByCall(SaveResponse(file, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -76,10 +116,10 @@ static PetscErrorCode LoadObstacle(Checkpoint file, CouplerSurface *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
+static PetscErrorCode LoadBody(Coupler c, Checkpoint file, CouplerSurface *s)
 {
   Vec         vec[3];
-  PetscReal  *values, sums[5], *state;
+  PetscReal  *values, sums[7], *state;
   PetscInt    n_state;
   const char *names[] = {"displacement", "velocity"};
   char        name[2 * BY_NAME_MAX];
@@ -98,8 +138,10 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
   PetscCall(PetscArraycpy(values, s->force, 3 * s->n_nodes));
   PetscCall(VecRestoreArrayWrite(vec[2], &values));
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/sums", s->name));
-  ByCall(CheckpointReadReal(file, name, 5, sums));
+  ByCall(CheckpointReadReal(file, name, 7, sums));
   s->work_exchanged = sums[4];
+  s->work_force     = sums[5];
+  s->scheme         = (CouplerScheme)sums[6];
   s->work_fluid     = sums[0];
   s->work_solid     = sums[1];
   s->n_substeps_sum = sums[2];
@@ -117,6 +159,9 @@ static PetscErrorCode LoadBody(Checkpoint file, CouplerSurface *s)
   ByCall(CheckpointReadReal(file, name, n_state, state));
   PetscCall(TLEDSetState(s->tled, n_state, state));
   PetscCall(PetscFree(state));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/mean_velocity", s->name));
+  ByCall(CheckpointReadReal(file, name, 3 * s->n_nodes, s->mean_velocity));
+  ByCall(LoadResponse(c, file, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,7 +194,7 @@ static PetscErrorCode LoadFlows(SPH sph, Checkpoint file)
 /* what iterations have learnt, and their books */
 static PetscErrorCode SaveInterface(Coupler c, Checkpoint file)
 {
-  PetscReal  sums[5] = {(PetscReal)c->solves, c->mismatch, c->solves_sum, c->mismatch_sum, (PetscReal)c->n_unsettled}, *state;
+  PetscReal  sums[6] = {(PetscReal)c->solves, c->mismatch, c->solves_sum, c->mismatch_sum, (PetscReal)c->n_unsettled, c->balance_start}, *state;
   PetscInt   n;
 
   PetscFunctionBegin;
@@ -158,13 +203,13 @@ static PetscErrorCode SaveInterface(Coupler c, Checkpoint file)
   PetscCall(RelaxationGetState(c->relaxation, &n, state));
   ByCall(CheckpointWriteReal(file, "interface/relaxation", n, state));
   PetscCall(PetscFree(state));
-  ByCall(CheckpointWriteReal(file, "interface/sums", 5, sums));
+  ByCall(CheckpointWriteReal(file, "interface/sums", 6, sums));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode LoadInterface(Coupler c, Checkpoint file)
 {
-  PetscReal sums[5], *state;
+  PetscReal sums[6], *state;
   PetscInt  n;
 
   PetscFunctionBegin;
@@ -174,12 +219,13 @@ static PetscErrorCode LoadInterface(Coupler c, Checkpoint file)
   ByCall(CheckpointReadReal(file, "interface/relaxation", n, state));
   PetscCall(RelaxationSetState(c->relaxation, n, state));
   PetscCall(PetscFree(state));
-  ByCall(CheckpointReadReal(file, "interface/sums", 5, sums));
+  ByCall(CheckpointReadReal(file, "interface/sums", 6, sums));
   c->solves       = (PetscInt)sums[0];
   c->mismatch     = sums[1];
   c->solves_sum   = sums[2];
   c->mismatch_sum = sums[3];
   c->n_unsettled  = (PetscInt)sums[4];
+  c->balance_start = sums[5];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -255,7 +301,7 @@ PetscErrorCode CouplerLoad(Coupler c, const char directory[])
   c->iterations_sum = clock[2];
   if (c->sph) ByCall(LoadFluid(c, file));
   if (c->sph) ByCall(LoadInterface(c, file));
-  for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(LoadBody(file, &c->surface[k]));
+  for (PetscInt k = 0; k < c->n_bodies; k++) ByCall(LoadBody(c, file, &c->surface[k]));
   for (PetscInt k = c->n_bodies; k < c->n_surfaces; k++)
     if (c->surface[k].moves) ByCall(LoadObstacle(file, &c->surface[k]));
   PetscCall(CouplerPlaceObstacles(c));

@@ -105,6 +105,7 @@ static PetscErrorCode Begin(Coupler c, PetscReal dt, PetscInt *most)
       PetscCall(CouplerArms(c, k));
     }
     if (!s->proxy) continue;
+    PetscCall(PetscArraycpy(s->last_force, s->force, 3 * s->n_nodes));
     ByCall(CouplerPredictWall(c, s, dt));
     PetscCall(CouplerBaseVelocity(s));
   }
@@ -157,7 +158,7 @@ PetscErrorCode CouplerCoupledStep(Coupler c, PetscReal dt)
   PetscCall(CouplerTimer(c, PHASE_PRESSURE));
   ByCall(Iterate(c, dt, most));
   for (PetscInt k = 0; k < c->n_bodies; k++)
-    if (c->surface[k].proxy) CouplerAddWork(&c->surface[k], dt);
+    if (c->surface[k].proxy) CouplerAddWork(c, &c->surface[k], dt);
   PetscCall(SPHKick(c->sph, dt));
   PetscCall(CouplerTimer(c, PHASE_PRESSURE));
   PetscCall(CouplerStop(c, dt));

@@ -91,18 +91,17 @@ static PetscErrorCode CreateSolver(CouplerSurface *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* matrix of the response for the current state and step; made again when the step or the body has changed */
-PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
+/* matrix of the response for a step dt about the displacement r->at */
+PetscErrorCode CouplerResponseMake(Coupler c, CouplerSurface *s, PetscReal dt)
 {
   CouplerResponse *r = &s->response;
   const PetscReal *mass;
-  Vec              U, V, F;
+  Vec              U;
 
   PetscFunctionBegin;
-  r->dt_step = dt;
-  if (r->dt > 0.0 && PetscAbsReal(dt / r->dt - 1.0) < 0.05 && r->age++ < c->params.response_every) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 3, 3 * s->n_nodes, r->at, &U));
   PetscCall(TLEDResponse(s->tled, U, &r->tangent));
+  PetscCall(VecDestroy(&U));
   if (!r->ksp) PetscCall(CreateSolver(s));
   PetscCall(MatCopy(r->tangent, r->matrix, SAME_NONZERO_PATTERN));
   PetscCall(MatScale(r->matrix, c->params.response_beta * dt * dt));
@@ -113,7 +112,26 @@ PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
   PetscCall(ProjectConstrained(s, mass, r->matrix));
   PetscCall(KSPSetOperators(r->ksp, r->matrix, r->matrix));
   PetscCall(KSPSetUp(r->ksp));
-  r->dt  = dt;
+  r->dt = r->dt_step = dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* matrix of the response for the current state and step; made again when the step or the body has changed */
+PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
+{
+  CouplerResponse *r = &s->response;
+  const PetscReal *u;
+  Vec              U, V, F;
+
+  PetscFunctionBegin;
+  r->dt_step = dt;
+  if (r->dt > 0.0 && PetscAbsReal(dt / r->dt - 1.0) < 0.05 && r->age++ < c->params.response_every) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!r->at) PetscCall(PetscMalloc1(3 * s->n_nodes, &r->at));
+  PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
+  PetscCall(VecGetArrayRead(U, &u));
+  PetscCall(PetscArraycpy(r->at, u, 3 * s->n_nodes));
+  PetscCall(VecRestoreArrayRead(U, &u));
+  PetscCall(CouplerResponseMake(c, s, dt));
   r->age = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -257,5 +275,6 @@ PetscErrorCode CouplerResponseDestroy(CouplerResponse *r)
   PetscCall(KSPDestroy(&r->ksp));
   PetscCall(VecDestroy(&r->rhs));
   PetscCall(VecDestroy(&r->solution));
+  PetscCall(PetscFree(r->at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,35 +31,109 @@ static PetscErrorCode AddedMassRatio(CouplerSurface *s, PetscReal rest_density, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* scheme of every body; those of c->params.scheme when the scene names one */
-PetscErrorCode CouplerSelectSchemes(Coupler c)
+/* (omega dt)^2 of the body's softest motion, by Rayleigh's quotient of its shape under a uniform load on the wetted surface, along the axis in which it is
+   softest: z K z/(z M z), z = (M + tau^2 K)^-1 f with tau far longer than dt. A body that nothing holds moves as a whole: 0. */
+static PetscErrorCode Stiffness(Coupler c, CouplerSurface *s, PetscReal dt, PetscReal *stiffness)
 {
-  const char *solver;
-  PetscBool   responds;
+  const PetscInt  *triangles;
+  const PetscReal *x, *v, *mass;
+  PetscInt         n;
+  Vec              z, Kz;
 
   PetscFunctionBegin;
-  PetscCall(SPHGetSolver(c->sph, &solver, &responds));
-  c->responds = responds;
-  if (c->params.scheme == COUPLER_SCHEME_MASS && c->n_bodies > 0 && !responds) PetscFunctionReturn(InputError("coupler.scheme", "mass needs a pressure solver that takes the bodies' response: sph.solver %s does not, iisph does; iterated needs nothing of it", solver));
+  *stiffness = PETSC_MAX_REAL;
+  PetscCall(CouplerResponseSetUp(c, s, 1e2 * dt));
+  PetscCall(TLEDGetSurface(s->tled, PETSC_TRUE, &n, &triangles));
+  PetscCall(TLEDGetPositions(s->tled, &x, &v));
+  PetscCall(TLEDGetMass(s->tled, &mass));
+  PetscCall(VecDuplicate(s->response.solution, &z));
+  PetscCall(VecDuplicate(z, &Kz));
+  for (int axis = 0; axis < 3; axis++) {
+    PetscReal    kinetic = 0.0, *f = s->answer;
+    PetscScalar  elastic;
+
+    PetscCall(PetscArrayzero(f, 3 * s->n_nodes));
+    for (PetscInt t = 0; t < n; t++) {
+      double a[3], b[3], ab[3];
+
+      Sub3(&x[3 * triangles[3 * t + 1]], &x[3 * triangles[3 * t]], a);
+      Sub3(&x[3 * triangles[3 * t + 2]], &x[3 * triangles[3 * t]], b);
+      Cross3(a, b, ab);
+      for (int k = 0; k < 3; k++) f[3 * triangles[3 * t + k] + axis] += Norm3(ab) / 6.0;
+    }
+    PetscCall(CouplerResponseSolve(s, f, f));
+    PetscCall(VecCopy(s->response.solution, z));
+    PetscCall(MatMult(s->response.tangent, z, Kz));
+    PetscCall(VecDot(z, Kz, &elastic));
+    for (PetscInt i = 0; i < 3 * s->n_nodes; i++) kinetic += mass[i / 3] * f[i] * f[i];
+    if (kinetic > 0.0) *stiffness = PetscMin(*stiffness, PetscMax(0.0, elastic) / kinetic * dt * dt);
+  }
+  PetscCall(VecDestroy(&z));
+  PetscCall(VecDestroy(&Kz));
+  s->response.dt = 0.0; // made for another step
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Scheme of every body; those of c->params.scheme when the scene names one.
+
+   Over a step the water answers a change dv of the wall's velocity with a force -m_w dv/dt, and the body a force F with dt/2 F/(M (1 + beta (omega dt)^2)),
+   beta = 1/4 (scheme_mass.c). The exchange, one after the other, shrinks errors by m_w/M over that bracket: where this is below 0.2 `explicit` is
+   enough (method 5.3), for heavy bodies and for those too stiff to follow within a step. All others need `mass`, or `iterated` when the pressure
+   solver takes no response. */
+PetscErrorCode CouplerSelectSchemes(Coupler c)
+{
+  const PetscReal enough = 0.2;
+  const char     *solver;
+  PetscReal       dt;
+
+  PetscFunctionBegin;
+  PetscCall(SPHGetSolver(c->sph, &solver, &c->responds));
+  if (c->params.scheme == COUPLER_SCHEME_MASS && c->n_bodies > 0 && !c->responds) PetscFunctionReturn(InputError("coupler.scheme", "mass needs a pressure solver that takes the bodies' response: sph.solver %s does not, iisph does; iterated needs nothing of it", solver));
+  PetscCall(SPHGetTimeStep(c->sph, &dt));
   for (PetscInt k = 0; k < c->n_bodies; k++) {
     CouplerSurface *s = &c->surface[k];
-    PetscReal       r = 0.0;
 
-    s->scheme = (CouplerScheme)c->params.scheme;
-    if (!s->proxy || c->params.scheme != COUPLER_SCHEME_AUTO) continue;
-    PetscCall(AddedMassRatio(s, c->rest_density, &r));
-    PetscCall(PetscInfo(c, "%s: added-mass ratio about %g\n", s->name, (double)r));
-    s->scheme = r < 0.2 ? COUPLER_SCHEME_EXPLICIT : responds ? COUPLER_SCHEME_MASS : COUPLER_SCHEME_ITERATED;
+    s->scheme    = (CouplerScheme)c->params.scheme;
+    s->stiffness = -1.0;
+    if (!s->proxy) continue;
+    PetscCall(AddedMassRatio(s, c->rest_density, &s->water));
+    if (c->params.scheme != COUPLER_SCHEME_AUTO) continue;
+    s->scheme = COUPLER_SCHEME_EXPLICIT;
+    if (s->water < enough) continue;
+    PetscCall(Stiffness(c, s, dt, &s->stiffness));
+    if (s->water < enough * (1.0 + c->params.response_beta * s->stiffness)) continue;
+    s->scheme = c->responds ? COUPLER_SCHEME_MASS : COUPLER_SCHEME_ITERATED;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const char *const scheme_names[] = {"auto", "explicit", "iterated", "mass"};
+
+const char *CouplerBodyScheme(const CouplerSurface *s) { return s->proxy ? scheme_names[s->scheme] : "none"; }
+
+/* one line a body: its scheme and why */
+PetscErrorCode CouplerViewSchemes(Coupler c, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < c->n_bodies && c->sph; k++) {
+    const CouplerSurface *s = &c->surface[k];
+
+    if (!s->proxy) {
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%s: dry\n", s->name));
+      continue;
+    }
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s: scheme %s (water moved about %.3g times the body's mass", s->name, scheme_names[s->scheme], (double)s->water));
+    if (s->stiffness >= 0.0) PetscCall(PetscViewerASCIIPrintf(viewer, ", omega dt of its softest motion about %.2g", (double)PetscSqrtReal(s->stiffness)));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s)\n", c->params.scheme == COUPLER_SCHEME_AUTO ? "" : "; named in the scene"));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 const char *CouplerSchemeName(Coupler c)
 {
-  static const char *const names[] = {"none", "explicit", "iterated", "mass"};
-  int                      most    = 0;
+  CouplerScheme most = COUPLER_SCHEME_AUTO;
 
   for (PetscInt k = 0; k < c->n_bodies; k++)
-    if (c->surface[k].proxy) most = PetscMax(most, (int)c->surface[k].scheme);
-  return names[most];
+    if (c->surface[k].proxy) most = PetscMax(most, c->surface[k].scheme);
+  return most == COUPLER_SCHEME_AUTO ? "none" : scheme_names[most];
 }

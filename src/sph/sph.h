@@ -119,6 +119,7 @@ typedef struct {
   const PetscReal *place;         /* n_proxies x 3 [m]; with `rotation` [rad/s] the velocity at a particle is v_b + rotation x (x_i - x_b); NULL: v_b */
   const PetscReal *rotation;
   PetscBool        slip;          /* a viscous fluid slips along it                                        */
+  PetscReal        coefficient;   /* on grad where forces and rates are concerned, not on phi; 0 = 1       */
   PetscReal       *force;         /* n_proxies x 3 [N], out: force of the fluid on each proxy; may be NULL */
   PetscReal        total[3];      /* [N] out: total force of the fluid on this surface                     */
   PetscReal        moment[3];     /* [N m] out: its moment about the origin, applied where the particles are */

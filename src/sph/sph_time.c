@@ -4,7 +4,7 @@
 #include "mat3.h"
 #include "sph_impl.h"
 
-/* largest |v| of the particles and of the walls [m/s] */
+/* largest |v| of the particles and of the planes [m/s]; surfaces are the coupler's (CouplerLimitStep()) */
 static PetscReal LargestSpeed(SPH sph)
 {
   const int n       = (int)sph->n;
@@ -14,10 +14,6 @@ static PetscReal LargestSpeed(SPH sph)
   for (int i = 0; i < n; i++) {
     const PetscReal *v = sph->v + 3 * i;
     largest            = PetscMax(largest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  }
-  for (PetscInt s = 0; s < sph->n_surfaces; s++) {
-    const PetscReal *v = sph->contacts[s].velocity;
-    for (PetscInt b = 0; v && b < sph->contacts[s].n_proxies; b++) largest = PetscMax(largest, v[3 * b] * v[3 * b] + v[3 * b + 1] * v[3 * b + 1] + v[3 * b + 2] * v[3 * b + 2]);
   }
   return PetscMax(sqrt(largest), SPHFastestPlane_Internal(sph));
 }
@@ -37,7 +33,7 @@ static PetscReal QuietStep(SPH sph)
   dt = min( cfl dx/|v|max, 0.25 sqrt(h/|a|max), 0.05 sqrt(h/g), 0.1 h/|U|, max_time_step ), and at most 1.1 times the last one
 
   and min( 0.125 h^2/nu, 0.8/K_ii ) where viscosity is explicit (sph_viscosity.c).
-  |v|max is of particles and walls, |a|max that of the last step, g with the largest acceleration of a moving tank, U the mean velocity that is
+  |v|max is of particles and planes, |a|max that of the last step, g with the largest acceleration of a moving tank, U the mean velocity that is
   asked for. Without motion and without gravity a step of 0.05 sqrt(h/(1 m/s^2)) is as good as any.
 
   Options Database Keys:

@@ -265,10 +265,10 @@ PetscErrorCode SPHSetContacts(SPH sph, PetscInt n_surfaces, SPHContacts contacts
 #pragma omp parallel for schedule(static)
     for (PetscInt t = 0; t < contacts[s].n_touched; t++) {
       const PetscInt i = contacts[s].particle[t];
-      w->union_factor[t] *= sph->surface_part * sph->open_surfaces[i];
+      w->union_factor[t] *= sph->surface_part * sph->open_surfaces[i] * (contacts[s].coefficient > 0 ? contacts[s].coefficient : 1.0);
       sph->open_surfaces[i] *= PetscMax(0.0, 1.0 - sph->surface_part * contacts[s].phi[t]);
       if (sph->params.viscosity > 0) w->friction[t] = SurfaceFriction(sph, &contacts[s], t, w->union_factor[t]);
-      if (sph->wall_flux != 1.0) w->union_factor[t] = flux; // from here on the factor in G
+      if (sph->wall_flux != 1.0) w->union_factor[t] = flux * (contacts[s].coefficient > 0 ? contacts[s].coefficient : 1.0); // from here on the factor in G
     }
   }
 
