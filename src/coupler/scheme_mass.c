@@ -190,14 +190,10 @@ static PetscErrorCode ForcesFromPressure(Coupler c, PetscInt k, const PetscReal 
 {
   CouplerSurface    *s = &c->surface[k];
   const SPHContacts *q = &c->contacts[k];
-  const PetscInt    *nodes;
-  const PetscReal   *weights;
   PetscReal          moment[3] = {0, 0, 0};
-  PetscInt           n_proxies;
 
   PetscFunctionBegin;
-  PetscCall(ProxyGetInterpolation(s->proxy, &n_proxies, &nodes, &weights));
-  PetscCall(PetscArrayzero(s->proxy_work, 3 * n_proxies));
+  PetscCall(PetscArrayzero(s->proxy_work, 3 * q->n_proxies));
   for (PetscInt t = 0; t < q->n_touched; t++) {
     const PetscReal scale = c->mass * p[q->particle[t]] * c->rest_density * factor[t];
 
@@ -208,11 +204,7 @@ static PetscErrorCode ForcesFromPressure(Coupler c, PetscInt k, const PetscReal 
     }
   }
   PetscCall(PetscArrayzero(s->answer, 3 * s->n_nodes));
-  for (PetscInt b = 0; b < n_proxies; b++) {
-    for (int a = 0; a < 3; a++) {
-      for (int i = 0; i < 3; i++) s->answer[3 * nodes[3 * b + a] + i] += weights[3 * b + a] * s->proxy_work[3 * b + i];
-    }
-  }
+  PetscCall(ProxyForcesToNodes(s->proxy, s->proxy_work, s->answer));
   PetscCall(ProxyAddCouple(s->proxy, moment, s->answer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -222,20 +214,11 @@ static PetscErrorCode AddWallRate(Coupler c, PetscInt k, const PetscReal factor[
 {
   CouplerSurface    *s = &c->surface[k];
   const SPHContacts *q = &c->contacts[k];
-  const PetscInt    *nodes;
-  const PetscReal   *weights;
   PetscReal          rotation[3];
-  PetscInt           n_proxies;
 
   PetscFunctionBegin;
   PetscCall(ProxyGetRotation(s->proxy, s->answer, rotation));
-  PetscCall(ProxyGetInterpolation(s->proxy, &n_proxies, &nodes, &weights));
-  for (PetscInt b = 0; b < n_proxies; b++) {
-    for (int i = 0; i < 3; i++) {
-      s->proxy_work[3 * b + i] = 0.0;
-      for (int a = 0; a < 3; a++) s->proxy_work[3 * b + i] += weights[3 * b + a] * s->answer[3 * nodes[3 * b + a] + i];
-    }
-  }
+  PetscCall(ProxyVelocitiesFromNodes(s->proxy, s->answer, s->proxy_work));
   for (PetscInt t = 0; t < q->n_touched; t++) {
     PetscReal rate = Dot3(rotation, s->arm + 3 * t);
 

@@ -269,16 +269,6 @@ PetscErrorCode ProxySetSampling(Proxy p, const PetscReal x[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ProxyGetInterpolation(Proxy p, PetscInt *n_proxies, const PetscInt *nodes[], const PetscReal *weights[])
-{
-  PetscFunctionBegin;
-  PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
-  if (n_proxies) *n_proxies = p->n;
-  if (nodes) *nodes = p->nodes;
-  if (weights) *weights = p->weights;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ProxyGetPoints(Proxy p, PetscInt *n, const PetscReal *x[], const PetscReal *normal[], const PetscReal *kappa[], const PetscReal *area[])
 {
   PetscFunctionBegin;

@@ -2,7 +2,7 @@
 byssus_module(proxy
   src/proxy/proxy.c src/proxy/proxy_keys.c src/proxy/proxy_fluid.c
   src/proxy/proxy_surface.c src/proxy/proxy_curvature.c src/proxy/proxy_grid.c src/proxy/proxy_sample.c
-  src/proxy/proxy_density.c src/proxy/proxy_place.c src/proxy/proxy_mask.c src/proxy/proxy_wall.c src/proxy/proxy_patch.c src/proxy/proxy_ellipsoid.c src/proxy/proxy_contacts.c src/proxy/proxy_transfer.c)
+  src/proxy/proxy_density.c src/proxy/proxy_place.c src/proxy/proxy_mask.c src/proxy/proxy_wall.c src/proxy/proxy_patch.c src/proxy/proxy_ellipsoid.c src/proxy/proxy_contacts.c src/proxy/proxy_spread.c src/proxy/proxy_transfer.c)
 
 # the readers of src/surface.h belong to base
 target_sources(base PRIVATE ${CMAKE_SOURCE_DIR}/src/surface_read.c)

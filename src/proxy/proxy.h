@@ -55,11 +55,12 @@ BY_EXTERN PetscErrorCode ProxySetVelocity(Proxy proxy, const PetscReal v[]);
 /* contacts with the fluid at its current sorted positions; arrays owned by the proxy, valid until the next call */
 BY_EXTERN PetscErrorCode ProxyGetContacts(Proxy proxy, SPHContacts *contacts);
 
-/* barycentric interpolation of proxies: 3 node numbers and 3 weights per proxy, borrowed until the next Update; with it the coupler
-   builds its wall operator: v_b = sum_a w_ba v_a */
-BY_EXTERN PetscErrorCode ProxyGetInterpolation(Proxy proxy, PetscInt *n_proxies, const PetscInt *nodes[], const PetscReal *weights[]);
+/* Forces on proxies, n_proxies x 3 [N], to the nodes of the part of the surface that each stands for, added to node_force; mean velocities of these parts, n_proxies x 3
+   [m/s], from those of the nodes: transposes of each other */
+BY_EXTERN PetscErrorCode ProxyForcesToNodes(Proxy proxy, const PetscReal force[], PetscReal node_force[]);
+BY_EXTERN PetscErrorCode ProxyVelocitiesFromNodes(Proxy proxy, const PetscReal v[], PetscReal velocity[]);
 /* adds to nodal forces (n_nodes x 3 [N]) the forces on proxies; total force and total moment (about any point) equal those
-   that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces at the proxies) */
+   that the fluid exerted, whose moment about the origin is `moment` [N m] (NULL: that of the forces in the middle of what each proxy stands for) */
 BY_EXTERN PetscErrorCode ProxyTransfer(Proxy proxy, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[]);
 /* the part of it that takes a moment [N m] to the nodes, added to node_force, and its transpose: rotation [rad/s] of the surface as a whole by nodal
    velocities, so that node_force . v = moment . rotation */

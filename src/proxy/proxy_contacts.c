@@ -515,10 +515,11 @@ PetscErrorCode ProxyFindContacts(Proxy p, PetscInt n, const PetscReal x[], SPHCo
   }
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the contacts of %s", p->name);
   PetscCall(Collect(p, n_chunks, contacts));
+  PetscCall(ProxySpread(p));
   contacts->n_proxies = p->n;
   contacts->area      = p->area;
   contacts->velocity  = p->node_velocity ? p->velocity : NULL;
-  contacts->place     = p->x;
+  contacts->place     = p->place;
   contacts->rotation  = p->rotation;
   contacts->force     = p->force;
   PetscFunctionReturn(PETSC_SUCCESS);

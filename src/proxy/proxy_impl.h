@@ -60,6 +60,9 @@ typedef struct {
   int       *kind, *side;                /* ProxyKind; for edges the side of the triangle                  */
   PetscInt  *part_start, *part_triangle; /* which triangles' area each proxy stands for ...                */
   PetscReal *part;                       /* ... and which fraction of it                                   */
+  PetscInt  *spread_start, *spread_node; /* n + 1: nodes of those triangles, each once (proxy_spread.c)    */
+  PetscInt  *part_slot;                  /* by part x 3: its corners among these nodes                     */
+  PetscReal *part_middle;                /* by part x 3: barycentric coordinates of its middle             */
   PetscInt  *piece_start, *piece_owner;  /* triangles cut into m^2 pieces (row by row), the proxy of each  */
   PetscReal *offset, *extent;            /* n, n x 8 [m], see ProxyPoint                                   */
   PetscReal *area0, *edge0;              /* triangle areas [m^2], edge lengths [m] when sampled            */
@@ -138,6 +141,11 @@ struct _p_Proxy {
   ProxyPoint   *points;         /* n                                                                       */
   ProxyReach   *reach;          /* n                                                                       */
   PetscReal    *x, *normal, *area, *velocity, *force; /* n x 3, x 3, n, x 3, x 3                           */
+  PetscBool     spread_valid;
+  PetscInt      spread_capacity, place_capacity;
+  PetscInt     *spread_start, *spread_node; /* n + 1: nodes that take a proxy's force ...                  */
+  PetscReal    *spread_weight;  /* ... with these weights, and give it its velocity                        */
+  PetscReal    *place;          /* n x 3 [m], where that force acts: sum of weights times positions        */
   PetscReal    *centre;         /* n x 3 [m], middle of the triangles that each stands for: always inside its patch */
   PetscReal    *exposed, *laid; /* n: 1 in the open, 0 on a planar wall; 0 in the open, 1 on an obstacle (proxy_wall.c) */
   PetscInt     *lies_on;        /* n: on which neighbour                                                   */
@@ -179,6 +187,12 @@ PetscErrorCode ProxySample(const ProxySurface *surface, const ProxyGeometry *geo
 /* offsets and extents of `points` from the surface that they stand for, into the sampling */
 PetscErrorCode ProxyMeasureParts(const ProxySurface *surface, const ProxyGeometry *geometry, const ProxyPoint points[], ProxySampling *sampling);
 PetscErrorCode ProxySamplingDestroy(ProxySampling *sampling);
+/* barycentric centre of the piece (i, j) of m^2, upward or downward, of a triangle */
+void           ProxyPieceCentre(PetscInt m, PetscInt i, PetscInt j, int down, PetscReal b[3]);
+
+/* proxy_spread.c */
+PetscErrorCode ProxySpreadPattern(const ProxySurface *surface, ProxySampling *sampling);
+PetscErrorCode ProxySpread(Proxy proxy);
 
 /* proxy_density.c: what the scene says of the density, into proxy->density; `given` is the surface of the scene */
 PetscErrorCode ProxyReadDensity(Proxy proxy, const ProxySurface *given);

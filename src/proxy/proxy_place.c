@@ -25,7 +25,8 @@ PetscErrorCode ProxyPlaceDestroy(Proxy p)
   PetscCall(PetscFree6(p->active, p->near, p->nodes, p->patch, p->weights, p->kappa));
   PetscCall(PetscFree7(p->x, p->normal, p->area, p->velocity, p->force, p->centre, p->exposed));
   PetscCall(PetscFree2(p->laid, p->lies_on));
-  p->capacity = p->n = 0;
+  PetscCall(PetscFree4(p->spread_start, p->spread_node, p->spread_weight, p->place));
+  p->capacity = p->n = p->spread_capacity = p->place_capacity = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,7 +145,7 @@ static PetscErrorCode PlaceActive(Proxy p)
     PlaceSupport(p, p->active[j], &p->points[j]);
   }
   if (p->params.kernel != PROXY_KERNEL_HALF_SPACE) PetscCall(ProxyEllipsoidVolumes(p->fluid.kernel, p->fluid.h, p->factor, p->n, p->points));
-  p->cells_valid = PETSC_FALSE;
+  p->cells_valid = p->spread_valid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,6 +154,7 @@ static PetscErrorCode TakeAll(Proxy p)
   PetscFunctionBegin;
   PetscCall(Reserve(p, p->sampling.n));
   p->n = p->sampling.n;
+  p->spread_valid = PETSC_FALSE;
   for (PetscInt i = 0; i < p->n; i++) p->active[i] = i;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -208,6 +210,7 @@ static PetscErrorCode KeepTouching(Proxy p)
     kept++;
   }
   p->n = kept;
+  p->spread_valid = PETSC_FALSE;
   PetscCall(PetscFree(keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -245,11 +248,6 @@ PetscErrorCode ProxyPlaceVelocities(Proxy p)
 {
   PetscFunctionBegin;
   if (!p->node_velocity) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < p->n; i++) {
-    for (int k = 0; k < 3; k++) {
-      p->velocity[3*i + k] = 0.0;
-      for (int c = 0; c < 3; c++) p->velocity[3*i + k] += p->weights[3*i + c]*p->node_velocity[3*p->nodes[3*i + c] + k];
-    }
-  }
+  PetscCall(ProxyVelocitiesFromNodes(p, p->node_velocity, p->velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -194,7 +194,7 @@ typedef struct {
 } Part;
 
 /* barycentric centre of the piece (i, j) of m^2: upward ones at (i + 1/3, j + 1/3)/m, downward ones at (i + 2/3, j + 2/3)/m */
-static inline void PieceCentre(PetscInt m, PetscInt i, PetscInt j, int down, PetscReal b[3])
+void ProxyPieceCentre(PetscInt m, PetscInt i, PetscInt j, int down, PetscReal b[3])
 {
   const PetscReal o = down ? 2.0/3.0 : 1.0/3.0;
   b[0] = 1.0 - (i + j + 2.0*o)/m;
@@ -239,7 +239,7 @@ static PetscErrorCode SplitAreas(const ProxySurface *s, const ProxyGeometry *g, 
       for (PetscInt j = 0; j < m - i; j++) {
         for (int down = 0; down < (i + j < m - 1 ? 2 : 1); down++) {
           PetscReal b[3], p[3];
-          PieceCentre(m, i, j, down, b);
+          ProxyPieceCentre(m, i, j, down, b);
           PointOf(s, g->x, t, b, p);
           owner[k++] = Nearest(&grid, list, x, g, s->patch[t], p, &g->normal[3*t]);
         }
@@ -332,7 +332,7 @@ PetscErrorCode ProxyMeasureParts(const ProxySurface *s, const ProxyGeometry *g, 
         for (int down = 0; down < (i + j < m - 1 ? 2 : 1); down++) {
           const PetscInt owner = q->piece_owner[k++];
           PetscReal      b[3];
-          PieceCentre(m, i, j, down, b);
+          ProxyPieceCentre(m, i, j, down, b);
           q->offset[owner] += a*PieceHeight(s, g->x, t, b, down ? -m : m, &points[owner]);
           PieceExtent(s, g->x, t, b, down ? -m : m, &points[owner], &q->extent[8*owner]);
           area[owner] += a;
@@ -409,6 +409,7 @@ PetscErrorCode ProxySample(const ProxySurface *s, const ProxyGeometry *g, const 
   if (params->thin) PetscCall(Thin(s, g, fluid->h, &list));
   PetscCall(SplitAreas(s, g, fluid->h, triangle, &list, sampling, &n_parts, &parts));
   PetscCall(Store(s, g, &list, n_parts, parts, sampling));
+  PetscCall(ProxySpreadPattern(s, sampling));
   PetscCall(PetscFree(parts));
   PetscCall(PetscFree(list.c));
   PetscCall(PetscFree3(node, edge, triangle));
@@ -420,6 +421,7 @@ PetscErrorCode ProxySamplingDestroy(ProxySampling *p)
   PetscFunctionBegin;
   PetscCall(PetscFree6(p->triangle, p->nodes, p->weights, p->kappa, p->kind, p->side));
   PetscCall(PetscFree3(p->part_start, p->part_triangle, p->part));
+  PetscCall(PetscFree4(p->spread_start, p->spread_node, p->part_slot, p->part_middle));
   PetscCall(PetscFree5(p->area0, p->edge0, p->x, p->offset, p->extent));
   PetscCall(PetscFree(p->piece_start));
   PetscCall(PetscFree(p->piece_owner));

@@ -147,14 +147,14 @@ PetscErrorCode ProxyGetRotation(Proxy p, const PetscReal v[], PetscReal rotation
   Input Parameters:
 + proxy  - the proxies
 . force  - force on each proxy [N], n_proxies x 3
-- moment - their moment about the origin as the fluid made it [N m]; NULL: that of the forces at the proxies
+- moment - their moment about the origin as the fluid made it [N m]; NULL: that of the forces in the middle of what each proxy stands for
 
   Output Parameter:
 . node_force - n_nodes x 3 [N], added to
 
   Notes:
-  Each force goes to the three nodes of its triangle by the proxy's barycentric weights, which are >= 0, so a push stays a push at
-  every node. The fluid exerts its forces where the particles are, up to h off the surface, so a couple remains. Letting each force
+  Each force goes to the nodes of the part of the surface that its proxy stands for (ProxyForcesToNodes()), by weights >= 0, so a push stays
+  a push at every node. The fluid exerts its forces where the particles are, up to h off the surface, so a couple remains. Letting each force
   act where its line meets the proxy's plane (method 5.1) removes it too, but with affine weights of size (distance off)/(edge
   length): on meshes finer than h they are large, of both signs, and load needle triangles with opposed forces that are pure noise.
   Here the couple of the whole body is added as the rotation field theta x (x_a - x_c) w_a over all surface nodes, w_a the area
@@ -163,7 +163,7 @@ PetscErrorCode ProxyGetRotation(Proxy p, const PetscReal v[], PetscReal rotation
 
   Cost: O(nodes + proxies).  Tests: tests/unit/proxy/test_transfer.c
 
-.seealso: ProxyGetContacts(), ProxyGetInterpolation()
+.seealso: ProxyGetContacts(), ProxyForcesToNodes()
 @*/
 PetscErrorCode ProxyTransfer(Proxy p, const PetscReal force[], const PetscReal moment[3], PetscReal node_force[])
 {
@@ -173,12 +173,10 @@ PetscErrorCode ProxyTransfer(Proxy p, const PetscReal force[], const PetscReal m
   PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
   if (!p->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(3*p->surface.n_nodes, &f));
+  PetscCall(ProxyForcesToNodes(p, force, f));
   for (PetscInt b = 0; b < p->n; b++) {
     double m[3];
-    for (int i = 0; i < 3; i++) {
-      for (int k = 0; k < 3; k++) f[3*p->nodes[3*b + i] + k] += p->weights[3*b + i]*force[3*b + k];
-    }
-    Cross3(&p->x[3*b], &force[3*b], m);
+    Cross3(&p->place[3*b], &force[3*b], m);
     for (int k = 0; k < 3; k++) total[k] += force[3*b + k], wanted[k] += m[k];
   }
 
