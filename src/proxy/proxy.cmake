@@ -9,3 +9,7 @@ target_sources(base PRIVATE ${CMAKE_SOURCE_DIR}/src/surface_read.c)
 # accuracy of samplings and kernels without a fluid: cmake --build build --target bench.proxy
 add_executable(bench.proxy EXCLUDE_FROM_ALL bench/bench_proxy.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:sph> $<TARGET_OBJECTS:proxy>)
 target_link_libraries(bench.proxy PRIVATE byssus_flags)
+
+# what proxies cost a step: cmake --build build --target bench.contacts
+add_executable(bench.contacts EXCLUDE_FROM_ALL bench/bench_contacts.c $<TARGET_OBJECTS:base> $<TARGET_OBJECTS:sph> $<TARGET_OBJECTS:proxy>)
+target_link_libraries(bench.contacts PRIVATE byssus_flags)
