@@ -281,6 +281,16 @@ PetscErrorCode ProxyGetPoints(Proxy p, PetscInt *n, const PetscReal *x[], const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ProxyGetCounts(Proxy p, PetscInt *in_use, PetscInt *sampled, PetscInt *samplings)
+{
+  PetscFunctionBegin;
+  PetscCheck(p->setup, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call ProxySetUp() first");
+  if (in_use) *in_use = p->n;
+  if (sampled) *sampled = p->sampling.n;
+  if (samplings) *samplings = p->n_samplings;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ProxyGetTotalCurvature(Proxy p, PetscReal *total)
 {
   PetscReal *kappa, *area;

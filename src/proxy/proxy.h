@@ -82,6 +82,8 @@ BY_EXTERN PetscErrorCode ProxySetSampling(Proxy proxy, const PetscReal x[]);
 
 /* proxies for output: positions, normals [n x 3], curvature kappa-bar, area; borrowed */
 BY_EXTERN PetscErrorCode ProxyGetPoints(Proxy proxy, PetscInt *n, const PetscReal *x[], const PetscReal *normal[], const PetscReal *kappa[], const PetscReal *area[]);
+/* proxies in use, proxies of the sampling, how often the surface was sampled by this process; each may be NULL */
+BY_EXTERN PetscErrorCode ProxyGetCounts(Proxy proxy, PetscInt *in_use, PetscInt *sampled, PetscInt *samplings);
 /* sum over vertices of Gaussian curvature times area (2 pi chi on a closed surface) */
 BY_EXTERN PetscErrorCode ProxyGetTotalCurvature(Proxy proxy, PetscReal *total);
 
