@@ -11,6 +11,7 @@ sys.dont_write_bytecode = True
 
 from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
+from coupling_proxies import resample, resting
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
@@ -18,6 +19,8 @@ from sections import main
 SECTIONS = (
     ("affine", "Sparse proxies on a plane", affine),
     ("shapes", "Hydrostatic force on known shapes over the density of proxies", shapes),
+    ("resample", "Sampling afresh: when, and what it costs", resample),
+    ("resting", "Bodies on walls, on obstacles, beside each other", resting),
     ("hydrostatic_plate", "A column of water on an elastic plate", hydrostatic_plate),
     ("gate", "A dam breaks through an elastic gate", gate),
     ("obstacle", "A dam breaks on an elastic obstacle", obstacle),

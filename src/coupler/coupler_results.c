@@ -228,6 +228,13 @@ static PetscErrorCode SummaryBodies(Coupler c, Json json)
       }
     }
     PetscCall(JsonReal(json, "proxies_mean", s->n_proxies_sum / PetscMax(1, c->step)));
+    if (s->proxy) {
+      PetscInt sampled, samplings;
+
+      PetscCall(ProxyGetCounts(s->proxy, NULL, &sampled, &samplings));
+      PetscCall(JsonInt(json, "proxies_sampled", sampled));
+      PetscCall(JsonInt(json, "samplings", samplings));
+    }
     if (s->tled) {
       PetscCall(JsonReal(json, "substeps", s->n_substeps_sum / PetscMax(1, c->step)));
       if (c->n_bodies == 1) PetscCall(JsonReal(json, "seconds_per_element_step", c->phase[PHASE_SOLID] / PetscMax(1.0, s->n_substeps_run * n_tets)));
