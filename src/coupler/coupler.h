@@ -20,7 +20,8 @@ typedef enum {
   PROBE_FORCE,        /* of the fluid on a body, an obstacle or a wall [N]             */
   PROBE_SURFACE,      /* height of the free surface, without splashes [m]              */
   PROBE_FLOW_RATE,    /* of the water through a rectangle [m^3/s]                      */
-  PROBE_POWER         /* of the fluid on a wall or obstacle that moves [W]             */
+  PROBE_POWER,        /* of the fluid on a wall or obstacle that moves [W]             */
+  PROBE_MOMENT        /* of the fluid on a body or an obstacle about a place [N m]     */
 } ProbeQuantity;
 
 typedef struct {

@@ -14,7 +14,7 @@ static const char *const scheme_names[] = {"auto", "explicit", "iterated", "mass
 static const char *const force_names[]  = {"held", "interpolated", NULL};
 static const char *const relaxations[]  = {"iqn_ils", "aitken", NULL};
 static const char *const kinds[]        = {"static", "dynamic", "both", "implicit", "none", NULL};
-static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", "surface", "flow_rate", "power", NULL};
+static const char *const quantities[]   = {"displacement", "velocity", "pressure", "height", "force", "surface", "flow_rate", "power", "moment", NULL};
 
 // clang-format off
 const Key RunKeys[] = {
@@ -98,7 +98,7 @@ const Key ProbeKeys[] = {
   {"min",      KEY_VEC3,   ROW(ProbeParams, min),      "m", "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "corner of the box that cuts the patch out of the body or wall; of the rectangle of a flow rate"},
   {"max",      KEY_VEC3,   ROW(ProbeParams, max),      "m", "", -HUGE_LENGTH, HUGE_LENGTH, 0, NULL, "opposite corner"},
   {"quantity", KEY_CHOICE, ROW(ProbeParams, quantity), "",  "displacement", 0, 0, KEY_REQUIRED, quantities,
-   "what is measured: pressure on a body, obstacle or wall is the force on a patch over its area; height is the volume of a column over its area, surface where the density falls below half; flow_rate is positive along the axis; power is that of the fluid on a wall or obstacle that moves"},
+   "what is measured: pressure on a body, obstacle or wall is the force on a patch over its area; height is the volume of a column over its area, surface where the density falls below half; flow_rate is positive along the axis; power is that of the fluid on a wall or obstacle that moves; moment that of its forces on a body or obstacle about `at`"},
   {"mean",     KEY_BOOL,   ROW(ProbeParams, mean),     "",  "false", 0, 0, 0, NULL, "mean over all steps since the last row in place of the value of the moment: a short impact is not missed, its impulse is right"},
   KEY_END};
 

@@ -202,10 +202,11 @@ static PetscErrorCode AddProbe(Coupler c, const char name[])
     PetscFunctionReturn(InputError(key, "must name an elastic body: only those have a displacement"));
   }
   if (p->quantity == PROBE_FORCE && probe->surface == WATER) PetscFunctionReturn(InputError(key, "must name what the force acts on: a body, an obstacle or a wall"));
+  if (p->quantity == PROBE_MOMENT && probe->surface < 0) PetscFunctionReturn(InputError(key, "must name what the moment acts on: a body or an obstacle"));
   if (p->quantity == PROBE_POWER && (probe->surface == WATER || is_body)) PetscFunctionReturn(InputError(key, "must name a wall or an obstacle: what moves by prescription"));
   if (p->quantity == PROBE_VELOCITY && probe->surface >= c->n_bodies) PetscFunctionReturn(InputError(key, "must not be an obstacle, whose velocity the scene says itself"));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s.quantity", name));
-  if (!c->sph && (IsOfWater(p->quantity) || p->quantity == PROBE_PRESSURE || p->quantity == PROBE_FORCE || p->quantity == PROBE_POWER || (p->quantity == PROBE_VELOCITY && !is_body))) {
+  if (!c->sph && (IsOfWater(p->quantity) || p->quantity == PROBE_PRESSURE || p->quantity == PROBE_FORCE || p->quantity == PROBE_MOMENT || p->quantity == PROBE_POWER || (p->quantity == PROBE_VELOCITY && !is_body))) {
     PetscFunctionReturn(InputError(key, "needs a fluid, and the scene has none"));
   }
   if (IsOfWater(p->quantity) && p->body[0]) PetscFunctionReturn(InputError(key, "is a quantity of the water at a place; leave out `body`"));
@@ -235,13 +236,13 @@ static int Columns(const CouplerProbe *probe)
   const int q = probe->params.quantity;
 
   if (probe->n_points) return 0;
-  return q == PROBE_DISPLACEMENT || q == PROBE_VELOCITY || q == PROBE_FORCE ? 3 : 1;
+  return q == PROBE_DISPLACEMENT || q == PROBE_VELOCITY || q == PROBE_FORCE || q == PROBE_MOMENT ? 3 : 1;
 }
 
 /* column headers "name [unit]" or "name_x [unit]"; headers has room for 3 columns a probe and the time */
 PetscErrorCode CouplerProbeHeaders(Coupler c, PetscInt *n, char headers[][2 * BY_NAME_MAX])
 {
-  static const char *const units[] = {"m", "m/s", "Pa", "m", "N", "m", "m^3/s", "W"};
+  static const char *const units[] = {"m", "m/s", "Pa", "m", "N", "m", "m^3/s", "W", "N m"};
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(headers[0], "time [s]", 2 * BY_NAME_MAX));
@@ -303,6 +304,21 @@ static PetscErrorCode PatchPressure(Coupler c, const CouplerProbe *probe, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* of the forces of the last step on the nodes, where these are now: sum_a (x_a - at) x f_a [N m] */
+static PetscErrorCode MomentAbout(const CouplerSurface *s, const PetscReal at[3], PetscReal moment[3])
+{
+  const PetscReal *x = s->x, *velocity;
+  PetscReal        total[3] = {0.0, 0.0, 0.0}, lever[3];
+
+  PetscFunctionBegin;
+  if (s->tled) PetscCall(TLEDGetPositions(s->tled, &x, &velocity));
+  CouplerMoment(s->n_nodes, x, s->force, moment);
+  for (PetscInt a = 0; a < 3 * s->n_nodes; a++) total[a % 3] += s->force[a];
+  Cross3(at, total, lever);
+  for (int i = 0; i < 3; i++) moment[i] -= lever[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal value[3])
 {
   PetscReal pressure, velocity[3], walls[18];
@@ -316,6 +332,9 @@ static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal
       PetscCall(SPHGetWallForces(c->sph, walls));
       for (int k = 0; k < 3; k++) value[k] = walls[3 * (-1 - probe->surface) + k];
     }
+    break;
+  case PROBE_MOMENT:
+    PetscCall(MomentAbout(&c->surface[probe->surface], probe->params.at, value));
     break;
   case PROBE_POWER:
     PetscCall(SPHGetWallPowers(c->sph, walls));
