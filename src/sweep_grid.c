@@ -225,20 +225,42 @@ static PetscErrorCode ReadReferenceText(Sweep *s, const char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* an axis is called by the last word of its key, unless that leaves two alike */
-static void ShortenNames(Sweep *s)
+/* "a.kernel,a.eta_min" -> "kernel,eta_min" */
+static void KeepLastWords(char name[])
 {
-  char *last[SWEEP_AXES_MAX];
+  char *to = name;
 
+  for (const char *word = name; *word;) {
+    const size_t n    = strcspn(word, ",");
+    const char  *last = word;
+
+    for (size_t k = 0; k < n; k++) {
+      if (word[k] == '.') last = word + k + 1;
+    }
+    memmove(to, last, (size_t)(word + n - last));
+    to += word + n - last;
+    word += n;
+    if (*word) *to++ = *word++;
+  }
+  *to = 0;
+}
+
+/* axes are called by the last words of their keys, unless that leaves two alike */
+static PetscErrorCode ShortenNames(Sweep *s)
+{
+  char *shorter[SWEEP_AXES_MAX];
+
+  PetscFunctionBegin;
   for (PetscInt a = 0; a < s->n_axes; a++) {
-    char *dot = strrchr(s->axis[a].name, '.');
-    last[a]   = dot ? dot + 1 : s->axis[a].name;
+    PetscCall(SweepKeep(s, s->axis[a].name, strlen(s->axis[a].name), &shorter[a]));
+    KeepLastWords(shorter[a]);
   }
   for (PetscInt a = 0; a < s->n_axes; a++) {
     PetscInt alike = 0;
-    for (PetscInt b = 0; b < s->n_axes; b++) alike += !strcmp(last[a], last[b]);
-    if (alike == 1 && !strchr(s->axis[a].name, ',')) s->axis[a].name = last[a];
+    for (PetscInt b = 0; b < s->n_axes; b++) alike += !strcmp(shorter[a], shorter[b]);
+    if (alike == 1) s->axis[a].name = shorter[a];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@ SweepReadAxes - axes and reference, from the command line or else the section `sweep`, which is in the options database @*/
@@ -253,7 +275,7 @@ PetscErrorCode SweepReadAxes(Sweep *s)
   if (!s->n_axes) {
     PetscFunctionReturn(InputError("sweep.over", "names nothing to vary\ngive -over key=value,value, or the scene a section `sweep: {over: [a], a: {keys: [sph.spacing], values: [0.01, 0.02]}}`"));
   }
-  ShortenNames(s);
+  PetscCall(ShortenNames(s));
   if (s->reference_text) ByCall(ReadReferenceText(s, s->reference_text));
   for (PetscInt k = 0; k < s->params.reference.n && !s->reference_text; k++) {
     ByCall(AddReference(s, "sweep.reference", s->params.reference.name[k], strlen(s->params.reference.name[k]), PETSC_TRUE));
@@ -365,6 +387,18 @@ static PetscErrorCode AddReferencePoint(Sweep *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* whether any section has a key with the last words of an option */
+static PetscBool EndsInKey(const SceneSection sections[], const char option[])
+{
+  for (const SceneSection *section = sections; section->name; section++) {
+    for (const Key *key = section->keys; key->name; key++) {
+      const size_t n = strlen(option), m = strlen(key->name);
+      if (m <= n && !strcmp(option + n - m, key->name) && (m == n || option[n - m - 1] == '_')) return PETSC_TRUE;
+    }
+  }
+  return PETSC_FALSE;
+}
+
 /* every value by itself, so that each error is told once */
 static PetscErrorCode CheckValues(Sweep *s)
 {
@@ -373,9 +407,16 @@ static PetscErrorCode CheckValues(Sweep *s)
   PetscFunctionBegin;
   for (PetscInt a = 0; a < s->n_axes; a++) {
     for (PetscInt i = 0; i < s->axis[a].n; i++) {
-      const PetscErrorCode ierr = ReadWith(s, s->axis[a].choice[i].n, s->axis[a].choice[i].setting, NULL);
-      if (ierr != BY_ERR_INPUT) PetscCall(ierr);
-      else found = ierr;
+      PetscBool            known = PETSC_TRUE;
+      const PetscErrorCode ierr  = ReadWith(s, s->axis[a].choice[i].n, s->axis[a].choice[i].setting, NULL);
+
+      if (ierr != BY_ERR_INPUT) {
+        PetscCall(ierr);
+        continue;
+      }
+      found = ierr;
+      for (PetscInt k = 0; k < s->axis[a].choice[i].n; k++) known = (PetscBool)(known && EndsInKey(s->sections, s->axis[a].choice[i].setting[k].option));
+      if (!known) break; /* not again for the other values */
     }
   }
   if (s->n_reference) {
