@@ -245,7 +245,8 @@ PetscErrorCode CouplerSolveFluid(Coupler c, PetscReal dt)
     CouplerSurface *s = &c->surface[k];
 
     if (!s->proxy) continue;
-    for (int i = 0; i < 3; i++) s->total[i] = c->contacts[k].total[i];
+    PetscCall(PetscArraycpy(s->total, c->contacts[k].total, 3));
+    PetscCall(PetscArraycpy(s->moment, c->contacts[k].moment, 3));
     if (!s->tled) continue;
     PetscCall(PetscArrayzero(s->force, 3 * s->n_nodes));
     PetscCall(ProxyTransfer(s->proxy, s->proxy_force, c->contacts[k].moment, s->force));

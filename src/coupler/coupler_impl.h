@@ -53,6 +53,7 @@ typedef struct {
   PetscReal       work_step, work_force; /* [J] of the forces on the body: in this step, and since the start without stops */
   PetscReal       work_fluid, work_solid, work_exchanged; /* [J] since the start; the last is the sum of the fluid's absolute works */
   PetscReal       total[3];      /* [N] of the last step                                                   */
+  PetscReal       moment[3];     /* [N m] of the last step about the origin                                */
   PetscInt        substeps;      /* of the last step                                                       */
   PetscReal       n_substeps_sum, n_proxies_sum; /* over the steps since the start                         */
   PetscReal       n_substeps_run;                /* trial runs and passes included, by this process        */

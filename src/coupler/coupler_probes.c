@@ -304,19 +304,13 @@ static PetscErrorCode PatchPressure(Coupler c, const CouplerProbe *probe, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* of the forces of the last step on the nodes, where these are now: sum_a (x_a - at) x f_a [N m] */
-static PetscErrorCode MomentAbout(const CouplerSurface *s, const PetscReal at[3], PetscReal moment[3])
+/* moment of the last step's forces about a place: that about the origin, less at x total [N m] */
+static void MomentAbout(const CouplerSurface *s, const PetscReal at[3], PetscReal moment[3])
 {
-  const PetscReal *x = s->x, *velocity;
-  PetscReal        total[3] = {0.0, 0.0, 0.0}, lever[3];
+  PetscReal lever[3];
 
-  PetscFunctionBegin;
-  if (s->tled) PetscCall(TLEDGetPositions(s->tled, &x, &velocity));
-  CouplerMoment(s->n_nodes, x, s->force, moment);
-  for (PetscInt a = 0; a < 3 * s->n_nodes; a++) total[a % 3] += s->force[a];
-  Cross3(at, total, lever);
-  for (int i = 0; i < 3; i++) moment[i] -= lever[i];
-  PetscFunctionReturn(PETSC_SUCCESS);
+  Cross3(at, s->total, lever);
+  for (int i = 0; i < 3; i++) moment[i] = s->moment[i] - lever[i];
 }
 
 static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal value[3])
@@ -334,7 +328,7 @@ static PetscErrorCode ProbeValue(Coupler c, const CouplerProbe *probe, PetscReal
     }
     break;
   case PROBE_MOMENT:
-    PetscCall(MomentAbout(&c->surface[probe->surface], probe->params.at, value));
+    MomentAbout(&c->surface[probe->surface], probe->params.at, value);
     break;
   case PROBE_POWER:
     PetscCall(SPHGetWallPowers(c->sph, walls));

@@ -178,7 +178,10 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
     }
     PetscCall(SPHStop(c->sph, q->particle[t], change, shift));
     Cross3(&q->position[3 * t], change, m);
-    for (int i = 0; i < 3; i++) lost[i] -= c->mass * m[i];
+    for (int i = 0; i < 3; i++) {
+      lost[i] -= c->mass * m[i];
+      s->moment[i] -= c->mass * m[i] / dt;
+    }
     Cross3(shift, vi, m);
     for (int i = 0; i < 3; i++) lost[i] -= c->mass * m[i];
   }

