@@ -9,10 +9,11 @@ import sys
 
 sys.dont_write_bytecode = True
 
+from coupling_blade import blade
 from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
-from coupling_proxies import resample, resting
 from coupling_paper import paper
+from coupling_proxies import resample, resting
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
@@ -26,6 +27,7 @@ SECTIONS = (
     ("hydrostatic_plate", "A column of water on an elastic plate", hydrostatic_plate),
     ("gate", "A dam breaks through an elastic gate", gate),
     ("obstacle", "A dam breaks on an elastic obstacle", obstacle),
+    ("blade", "A flexible blade in a current", blade),
     ("piston", "Added mass: a piston under a column", piston),
     ("plate_ladder", "Added mass: a clamped plate under a column", plate_ladder),
     ("hard", "Hard cases", hard),
