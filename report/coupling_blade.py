@@ -9,7 +9,7 @@ from program import mesh, table
 from sections import claim
 
 BLADE = """A blade l = 200 mm high, b = 40 mm wide and 5 mm thick, as heavy as water, stands clamped on the floor in a current of 0.4 m/s, 0.27 m deep, that enters and leaves freely; half of it, y > 0, in a channel
-60 x 12 cm between slipping walls. Thickness over dx: 0.5 and 0.67, a sheet with water on both sides. {n} quadratic tetrahedra, Poisson's ratio 0. Pressure tolerance 1e-4. Means over {low} < t < {high} s.
+60 x 12 cm between slipping walls. Thickness over dx: 0.5 and 0.63, a sheet with water on both sides. {n} quadratic tetrahedra, Poisson's ratio 0. Pressure tolerance 1e-4. Means over {low} < t < {high} s.
 
 Reference: the steady model of Luhar & Nepf 2011 (report/data: {source}) without buoyancy. Its Cauchy number is Ca = rho C_D b U^2 l^3/(2 E I). C_D is not put in: it is that of the same blade held rigid in the
 same water, F_0 = rho C_D b l U^2/2, so Ca = F_0 l^2/(E I), and the reduction of drag F/F_0 is the model's effective length over l. {drag}
@@ -19,7 +19,7 @@ section, and its water has as much friction as its {across} particles a width gi
 
 HEIGHT, WIDTH, THICKNESS, SPEED, DEPTH, HALF = 0.2, 0.04, 0.005, 0.4, 0.27, 0.12
 INERTIA = WIDTH * THICKNESS**3 / 12
-WINDOW = (0.9, 1.6)
+WINDOW = (0.8, 1.4)
 STIFFNESS = (6.7e7, 2e7, 6.7e6)  # Young's moduli [Pa]
 FINE = 2e7
 
@@ -98,7 +98,7 @@ def blade():
     table_of = data("luhar_nepf")
     plain = table_of["B"] == 0
     apart = max(abs(steady(number)[0] - height) for number, height in zip(table_of["Ca"][plain], table_of["h_over_l"][plain]))
-    coarse, fine = 0.01, 0.0075
+    coarse, fine = 0.01, 0.008
     rigid = {dx: measure(f"blade_rigid_{10000 * dx:.0f}", dx) for dx in (coarse, fine)}
     chosen = [(coarse, young) for young in STIFFNESS] + [(fine, FINE)]
     runs = [against(measure(f"blade_{young:.0e}_{10000 * dx:.0f}", dx, young), rigid[dx]) for dx, young in chosen]
