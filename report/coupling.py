@@ -14,12 +14,16 @@ from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
 from coupling_paper import paper
 from coupling_proxies import resample, resting
+from coupling_proxies import resample, resting
+from coupling_paper import convergence, fewest, paper
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
 
 SECTIONS = (
     ("paper", "The paper's scenes: a bunny and an octopus", paper),
+    ("fewest", "The fewest proxies for the bunny", fewest),
+    ("convergence", "The paper's convergence study", convergence),
     ("affine", "Sparse proxies on a plane", affine),
     ("shapes", "Hydrostatic force on known shapes over the density of proxies", shapes),
     ("resample", "Sampling afresh: when, and what it costs", resample),

@@ -94,14 +94,17 @@ def octopus(spacing):
 class Study:
     """What `byssus sweep` left of samplings: `rows` name -> columns of sweep.csv, `probes` name -> columns, `sampled` name -> proxies of the whole surface."""
 
-    def __init__(self, name, scene, samplings, reference, end, **run):
+    made = set()  # directories of this process: a second study of the same runs takes them as they are
+
+    def __init__(self, name, scene, samplings, reference, end, keys=KEYS, **run):
         body = scene["bodies"][0]
         directory = WORK / name
-        if not options["keep"]:
+        if not options["keep"] and name not in Study.made:
             shutil.rmtree(directory, ignore_errors=True)
+        Study.made.add(name)
         texts = {n: ":".join(str(v) for v in values) for n, values in samplings.items()}
-        axis = {"keys": [f"{body}.proxy.{key}" for key in KEYS], "values": list(texts.values())}
-        wanted = [f"{body}.proxy.{key}={value}" for key, value in zip(KEYS, samplings[reference])]
+        axis = {"keys": [f"{body}.proxy.{key}" for key in keys], "values": list(texts.values())}
+        wanted = [f"{body}.proxy.{key}={value}" for key, value in zip(keys, samplings[reference])] if reference else []
         scene = dict(scene, run={"end": end, "output_every": 0.001, "fields_every": 0.01, "directory": str(directory), **run},
                      sweep={"over": ["sampling"], "sampling": axis, "reference": wanted, "directory": str(directory)})
         path = write_scene(name, scene)
@@ -111,7 +114,7 @@ class Study:
             rows = list(csv.reader(file))
         heads = [cell.split(" [")[0] for cell in rows[0]]
         found = {row[1]: dict(zip(heads, row)) for row in rows[1:]}
-        self.directory, self.body = directory, body
+        self.directory, self.body, self.keys = directory, body, keys
         self.rows = {n: found[text] for n, text in texts.items()}
         broken = [n for n, row in self.rows.items() if row["status"] not in ("done", "reference")]
         if reference in broken:
@@ -124,7 +127,7 @@ class Study:
 
     def whole(self, path, values):
         """proxies on the whole surface, wet or dry: what a sampling that does not know of the water places"""
-        words = [w for key, value in zip(KEYS, values) for w in (f"-{self.body}_proxy_{key}", value)]
+        words = [w for key, value in zip(self.keys, values) for w in (f"-{self.body}_proxy_{key}", value)]
         found = re.search(r"proxies \d+ of (\d+) in use", execute([PROGRAM, "check", path, *words], timeout=900))
         return int(found.group(1))
 
@@ -229,6 +232,108 @@ def moments(study):
     with Image.open(picture) as image:
         image.convert("RGB").resize((900, round(900 * image.height / image.width))).quantize(128).save(path, optimize=True)
     return f"\n![four moments](../pictures/{path.name})\n"
+
+
+FEWEST_KEYS = (*KEYS, "eta_min", "eta_max")
+FEWEST = {
+    "uniform, 0.7": ("half_space", 0.7, "robust", "true", 0.1, 0.4, 1),
+    "uniform, 0.5": ("half_space", 0.5, "robust", "true", 0.1, 0.4, 1),
+    "uniform, 0.35": ("half_space", 0.35, "robust", "true", 0.1, 0.4, 1),
+    "adaptive, 0.3 to 0.7": ("half_space", 0, "robust", "true", 0.1, 0.3, 0.7),
+    "adaptive, 0.2 to 0.5": ("half_space", 0, "robust", "true", 0.1, 0.2, 0.5),
+}
+FEWEST_TEXT = """The bunny of `paper`, sampled ever more coarsely: density of the proxies along a line over that of the particles, uniform or from the flattest to the most curved parts (`kappa`, or
+`eta_min` and `eta_max`). Force of the water on the bunny, means over 5 ms, against *fine*: rms of the difference, and difference of the means over time, over the largest force.
+"""
+
+
+def windows(study, name, probe, n):
+    """means over n rows"""
+    values = study.vector(name, probe)[1:]
+    return values[:len(values) // n * n].reshape(-1, n, 3).mean(axis=1)
+
+
+def fewest():
+    end = 0.05
+    scene, _ = bunny(0.00138)
+    known = Study("paper_bunny", scene, {n: SAMPLINGS[n] for n in ("ours, uniform", "ours, adaptive", "fine")}, "fine", end)
+    sparse = Study("fewest_bunny", scene, FEWEST, None, end, keys=FEWEST_KEYS)
+    reference, rows, points = windows(known, "fine", "load", 5), [], []
+    largest = np.max(np.linalg.norm(reference, axis=1))
+    for study, name in [(known, n) for n in ("ours, uniform", "ours, adaptive")] + [(sparse, n) for n in FEWEST]:
+        if name not in study.done:
+            rows.append([name, f"{study.sampled[name]:,}", "", study.rows[name]["status"], "", "", ""])
+            continue
+        off = windows(study, name, "load", 5) - reference
+        rms, mean = (float(v) / largest for v in (np.sqrt(np.mean(np.sum(off**2, axis=1))), np.linalg.norm(off.mean(axis=0))))
+        points.append((study.sampled[name], rms, mean, name))
+        rows.append([name, f"{study.sampled[name]:,}", f"{study.number(name, 'proxies'):,.0f}", percent(rms), percent(mean), f"{1e3 * study.number(name, 'step_cpu'):.0f}",
+                     percent(study.number(name, "proxy_share"), 0)])
+    good = min((p for p in points if p[1] <= 0.02 and p[2] <= 0.02), default=None)
+    text = FEWEST_TEXT + table(["sampling", "proxies, whole surface", "in use (mean)", "force, rms", "force, mean", "cpu a step, ms", "proxies' share"], rows)
+    if good:
+        claim("bunny: fewest proxies for 2 % force error (paper: 7,055 adaptive, 32,666 uniform)", f"{good[0]:,}: {good[3]}, rms {percent(good[1])}", bar="2 %", met=True)
+    else:
+        claim("bunny: fewest proxies for 2 % force error", "none of those tried", bar="2 %", met=False)
+    figure, axes = draw.figure(width=7.5)
+    for k, (column, label) in enumerate(((1, "rms"), (2, "mean"))):
+        ordered = sorted(points)
+        axes.loglog([p[0] for p in ordered], [100 * p[column] for p in ordered], marker="os"[k], label=label)
+    axes.axhline(2, color=draw.style.MUTED, linestyle="--", linewidth=1)
+    axes.set_xlabel("proxies on the whole surface")
+    axes.set_title("force on the bunny: difference from fine, %")
+    axes.legend()
+    return text + draw.save(figure, "fewest", "force error over the number of proxies")
+
+
+SUPPORTS = {"spherical, uniform": ("sphere", 1, "minmax", "false", 0), "ellipsoidal, adaptive": ("ellipsoid", 0, "minmax", "false", 0), "half space, adaptive": ("half_space", 0, "robust", "true", 0.1)}
+CONVERGENCE_TEXT = """The paper's figure 11: a soft ball (`meshes/ball.msh`, density 900, E 50 kPa) falls 2 cm into a tank of 0.32 x 0.32 x 0.19 m of a viscous liquid (10 Pa s), {n:,} particles, and comes to
+rest. Q: particles within the support radius of a proxy, and as deep below the level of the liquid at rest, whose surface has no full density. Spherical and ellipsoidal support as in `paper`, half space: the defaults.
+"""
+
+
+def near_body(study, name, level, h):
+    """times and mean density of the particles near the proxies; mean nodal speed"""
+    from run import Series  # of src/plot, which draw has put on the path
+
+    directory = study.directory / study.rows[name]["run"]
+    fluid, proxies, body = (Series(str(directory / f"{n}.vtkhdf")) for n in ("fluid", "ball_proxies", "ball"))
+    times, density, speed = np.array(fluid.times), [], []
+    for k in range(fluid.n_steps):
+        x, rho, b = fluid.points(k), fluid.field("density", k), proxies.points(k)
+        deep = x[:, 2] < level - h
+        near = [len(b) > 0 and np.min(np.sum((b - p) ** 2, axis=1)) < h * h for p in x[deep]]
+        density.append(np.mean(rho[deep][near]) if np.any(near) else math.nan)
+        speed.append(np.mean(np.linalg.norm(body.field("velocity", k), axis=1)))
+    for series in (fluid, proxies, body):
+        series.close()
+    return times, np.array(density), np.array(speed)
+
+
+def convergence():
+    spacing, end = 0.016, 2.0
+    scene = {"domain": {"min": [-0.16, -0.16, 0], "max": [0.16, 0.16, 0.5], "walls": ["xmin", "xmax", "ymin", "ymax", "zmin"]}, "gravity": [0, 0, -9.81],
+             "sph": {"spacing": spacing, "viscosity": 10, "fill": ["pool"], "pool": {"min": [-0.16, -0.16, 0], "max": [0.16, 0.16, 0.192]}},
+             "bodies": ["ball"], "ball": {"mesh": str(ROOT / "meshes" / "ball.msh"), "translate": [0, 0, 0.292], "density": 900, "young": 5e4, "poisson": 0.45}}
+    study = Study("convergence", scene, SUPPORTS, None, end, output_every=0.02, fields_every=0.04)
+    level = 0.192 + 0.9 * 4 / 3 * math.pi * 0.08**3 / 0.32**2
+    figure, axes = draw.figure(2, width=11, height=3.9)
+    rows, lines, particles = [], ([], []), 0
+    for name in study.done:
+        times, density, speed = near_body(study, name, level, 2 * spacing)
+        late = times > 0.8 * end
+        rest, still = float(np.nanmean(density[late])) / 1000 - 1, float(np.mean(speed[late]))
+        rows.append([name, f"{study.sampled[name]:,}", percent(rest, 3), percent(float(np.nanstd(density[late])) / 1000, 3), f"{np.max(speed):.2f}", f"{1e3 * still:.2f}"])
+        for k, values in enumerate((density, speed)):
+            lines[k].append((name, times, values))
+        particles = int(study.number(name, "particles"))
+        claim(f"mean density near the body at rest, {name} support", percent(abs(rest), 3), bar="1 %", met=abs(rest) <= 0.01)
+        claim(f"mean nodal speed at rest, {name} support", f"{1e3 * still:.2f} mm/s", bar="1 % of its largest", met=still <= 0.01 * np.max(speed))
+    draw.curves(axes[0], lines[0], xlabel="time [s]", ylabel="kg/m^3", title="mean density of Q")
+    draw.curves(axes[1], lines[1], xlabel="time [s]", ylabel="m/s", title="mean nodal speed", legend=False)
+    axes[1].set_yscale("log")
+    text = CONVERGENCE_TEXT.format(n=particles) + table(["support", "proxies, whole surface", f"density of Q / 1000 - 1, mean over t > {0.8 * end:.1f} s", "its noise", "largest mean nodal speed, m/s", "at rest, mm/s"], rows)
+    return text + draw.save(figure, "convergence", "density near the body and nodal speed over time")
 
 
 if __name__ == "__main__":
