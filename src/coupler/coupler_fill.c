@@ -408,6 +408,10 @@ PetscErrorCode CouplerBuildFluid(Coupler c, const DomainParams *domain)
   ByCall(SPHSetUp(c->sph));
   ByCall(SPHPack(c->sph, 1e-3, 100, c->n_surfaces ? PackContacts : NULL, c));
   if (params->settle) ByCall(SPHSettle(c->sph, 1e-2, 600, c->n_surfaces ? PackContacts : NULL, c, NULL));
+  if (c->n_surfaces) { // the last sweep too
+    ByCall(SPHUpdateNeighbors(c->sph));
+    ByCall(PackContacts(c, c->sph));
+  }
   ByCall(SetVelocities(c->sph, &params->fill, cloud.n, cloud.block));
   PetscCall(PetscFree(cloud.block));
   PetscFunctionReturn(PETSC_SUCCESS);
