@@ -12,10 +12,8 @@ sys.dont_write_bytecode = True
 from coupling_blade import blade
 from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
-from coupling_paper import paper
-from coupling_proxies import resample, resting
-from coupling_proxies import resample, resting
 from coupling_paper import convergence, fewest, paper
+from coupling_proxies import resample, resting
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main

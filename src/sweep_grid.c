@@ -32,13 +32,13 @@ static size_t PieceLength(const char text[], char separator)
   return n;
 }
 
-/* the words behind an option of ours, up to the next option: joined by commas */
-static PetscErrorCode TakeWords(Sweep *s, int argc, char *argv[], int *i, char **joined)
+/* the words behind an option of ours, at most `n` and up to the next option: joined by commas */
+static PetscErrorCode TakeWords(Sweep *s, int n, int argc, char *argv[], int *i, char **joined)
 {
   char text[BY_NAMES_MAX * (BY_NAME_MAX + 1)] = "";
 
   PetscFunctionBegin;
-  while (*i + 1 < argc && argv[*i + 1][0] != '-') {
+  while (n-- > 0 && *i + 1 < argc && argv[*i + 1][0] != '-') {
     const size_t used = strlen(text);
     snprintf(text + used, sizeof(text) - used, "%s%s", used ? "," : "", argv[++*i]);
   }
@@ -75,7 +75,7 @@ PetscErrorCode SweepReadArguments(Sweep *s, int argc, char *argv[])
       s->reference_text = argv[++i];
     } else {
       s->overrides[s->n_overrides++] = section[which - 2];
-      PetscCall(TakeWords(s, argc, argv, &i, &s->overrides[s->n_overrides]));
+      PetscCall(TakeWords(s, which == 2 ? BY_NAMES_MAX : 1, argc, argv, &i, &s->overrides[s->n_overrides]));
       s->n_overrides++;
     }
   }

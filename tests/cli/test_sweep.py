@@ -43,6 +43,7 @@ BAD = [
     ("a value twice", "", ["-over", "sph.spacing=0.05,0.05"], ["has the value 0.05 twice"]),
     ("no such probe", "", ["-over", "sph.spacing=0.05,0.04", "-probe", "bed", "top"], ["has top, which is not a probe of the scene"]),
     ("no jobs", "", ["-over", "sph.spacing=0.05,0.04", "-jobs", "0"], ["-sweep_jobs = 0 is out of range"]),
+    ("a word too many", "", ["-over", "sph.spacing=0.05,0.04", "-directory", "out", "more"], ["more is not an option"]),
     ("key both varied and set", "", ["-over", "sph.spacing=0.05,0.04", "-sph_spacing", "0.1"], ["-sph_spacing is given twice"]),
     ("what only a check finds", "", ["-over", "water.max=0.4"], ["-water_max is not a known option"]),
     ("a domain inside out", "", ["-over", "domain.max=[1,1,1],[0.4,0.2,-1]"], ["is not above domain.min in z", "cannot be run with max="]),
