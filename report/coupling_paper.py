@@ -16,7 +16,7 @@ import numpy as np
 
 import draw
 from flow import as_arrays, percent
-from program import PROGRAM, ROOT, WORK, Failure, attempt, execute, options, read_json, say, table, write_scene
+from program import PROGRAM, ROOT, WORK, Failure, Missing, attempt, execute, options, read_json, say, table, write_scene
 from sections import claim
 
 KEYS = ("kernel", "kappa", "range", "thin", "resample_tolerance")
@@ -39,7 +39,7 @@ def given(name):
     folder = os.environ.get("BYSSUS_MESHES")
     path = pathlib.Path(folder or ".") / name
     if not folder or not path.exists():
-        raise Failure(f"{name} is needed: set BYSSUS_MESHES to a directory that has it (libigl's tutorial data, https://github.com/libigl/libigl-tutorial-data)")
+        raise Missing(f"{name} is needed: set BYSSUS_MESHES to a directory that has it (libigl's tutorial data, https://github.com/libigl/libigl-tutorial-data)")
     return path
 
 
@@ -167,6 +167,8 @@ def draw_study(study, shown, name, label):
 PAPER_TEXT = """{n} particles (36 x 30 x 24, spacing {spacing} mm) hit the body at 1 m/s and run off, {end} s. The bunny stands fixed on its base, {tets} tetrahedra by
 `meshes/solid_from_surface.py --tets 3216`, in the size of its file (0.156 m), E 20 kPa; the spacing is chosen so that the paper's rule puts about as many proxies on it as in the
 paper. The octopus, {tets_octopus} tetrahedra, is scaled to 0.25 m, E 100 kPa. Density 1000, nu 0.4, every other key as by default.
+The bunny is that of the Stanford 3D Scanning Repository, the octopus was modelled by Mark Pauly; both by way of libigl's tutorial data, and not in this repository: `BYSSUS_MESHES` names a
+directory that has `bunny.off` and `octopus.msh`.
 
 - *paper, uniform*: boundary particles at spacing h/2 with spherical support (`kernel: sphere, kappa: 1, thin: false, resample_tolerance: 0`): a proxy at every vertex, sampled afresh every step.
 - *paper, adaptive*: ellipsoids, Gaussian curvature from its smallest to its largest value onto 0.4 to 1 (`kernel: ellipsoid, measure: gaussian, range: minmax, thin: false, resample_tolerance: 0`).

@@ -25,6 +25,10 @@ class Failure(Exception):
     """Something could not be run; the message says what."""
 
 
+class Missing(Failure):
+    """Something that is not in the repository is not here; the section stays as it stands on the page."""
+
+
 def say(text):
     print(f"   {text}", file=sys.stderr, flush=True)
 
