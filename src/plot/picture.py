@@ -10,6 +10,7 @@ import style
 
 WATER = LinearSegmentedColormap.from_list("water", ["#15508f", "#1d6fb4", "#379bd0", "#6cc4db", "#aee2db", "#f4f6d2"])
 SOLID = LinearSegmentedColormap.from_list("solid", ["#f3dcc0", "#f4b183", "#e5794f", "#c0392f", "#7b1431"])
+PRESSURE = LinearSegmentedColormap.from_list("pressure", ["#9ea1a6", "#a497b8", "#9a7bb8", "#8150a4", "#551f80"])  # an obstacle without water is grey
 OBSTACLE = (0.62, 0.63, 0.65)
 FLOOR, WALL = (0.93, 0.935, 0.94), (0.965, 0.97, 0.975)
 
@@ -29,6 +30,7 @@ class View:
         self.surfaces = {body.name: body.triangles() for body in run.bodies}
         self.speed = self._speed_range() if run.fluid else None
         self.solids = self._solid_ranges()
+        self.pressure = self._pressure_top()
 
     def _up(self):
         gravity = self.run.vector(None, "gravity")
@@ -88,6 +90,13 @@ class View:
         top = nice_top(max(ranges.values(), default=0.0))
         return {name: top for name in ranges}
 
+    def _pressure_top(self):
+        """end of the scale of the water's pressure on obstacles; None where there is none"""
+        shown = [body for body in self.run.bodies if body.name not in self.solids and "pressure" in body.fields]
+        tops = [np.percentile(body.field("pressure", body.step_at(t)), 98) for body in shown for t in self.sample]
+        top = max(tops, default=0.0)
+        return nice_top(top) if np.isfinite(top) and top > 0 else None
+
     def corners(self):
         return np.array([[(self.low, self.high)[i][0], (self.low, self.high)[j][1], (self.low, self.high)[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 
@@ -118,6 +127,8 @@ class View:
             if body.name in self.solids:
                 size = np.linalg.norm(body.field("displacement", step), axis=1)
                 colours = SOLID(np.nan_to_num(size / self.solids[body.name], nan=1.0, posinf=1.0))[:, :3]
+            elif self.pressure and "pressure" in body.fields:
+                colours = PRESSURE(np.clip(body.field("pressure", step) / self.pressure, 0, 1))[:, :3]
             else:
                 colours = np.tile(OBSTACLE, (len(points), 1))
             normals = render.corner_normals(points, triangles)
@@ -189,6 +200,8 @@ def add_scales(figure, view, box):
         scales.append((WATER, view.speed, "speed of the water [m/s]"))
     if view.solids:
         scales.append((SOLID, next(iter(view.solids.values())), "displacement of the body [m]" if len(view.solids) == 1 else "displacement of the bodies [m]"))
+    if view.pressure:
+        scales.append((PRESSURE, view.pressure, "pressure on obstacles [Pa]"))
     left, bottom, width, height = box
     for n, (colours, top, label) in enumerate(scales):
         axes = figure.add_axes([left + n * width / max(len(scales), 1), bottom, 0.82 * width / max(len(scales), 1), height])
