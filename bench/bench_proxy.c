@@ -119,7 +119,7 @@ static void AddPush(const Water *w, PetscInt i, const double g[3], Push *push)
 /* proxies with the measure: 0 uniform, 1 gaussian, 2 principal */
 static PetscErrorCode Sampled(const Shape *s, int kernel, int measure, double eta, Proxy *proxy)
 {
-  const ProxyFluid fluid = {1.0, 0.5, SPH_CUBIC, SPH_CUBIC, {-50, -50, -50}, {50, 50, 50}, 0};
+  const ProxyFluid fluid = {.h = 1.0, .dx = 0.5, .kernel = SPH_CUBIC, .gradient_kernel = SPH_CUBIC, .min = {-50, -50, -50}, .max = {50, 50, 50}};
   ProxyParams     *params;
 
   PetscFunctionBegin;

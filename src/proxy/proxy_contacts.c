@@ -288,6 +288,35 @@ static void ExposeTouched(const Proxy p, const double x[3], const double base[3]
   }
 }
 
+/* Past the end of all that is in reach: phi fades to nothing. Sums of Shepard means would not: sparse proxies, with far-reaching weights, carry a half space
+   as far past an edge as the octagons around their parts reach, after the face behind the edge has come out of reach. */
+static double FadePast(double h, const Touch touch[], int n, int n_slots, double phi, double grad[][3])
+{
+  int    nearest[PROXY_PATCHES];
+  double sum = 0.0, slope;
+
+  // of each patch the least distance b_s; past = (sum b_s^-4)^(-1/4), about the least of them, smooth where two are the same
+  for (int s = 0; s < n_slots; s++) nearest[s] = -1;
+  for (int i = 0; i < n; i++) {
+    int *best = &nearest[touch[i].slot];
+    if (*best < 0 || touch[i].pair.beyond < touch[*best].pair.beyond) *best = i;
+  }
+  for (int s = 0; s < n_slots; s++) {
+    const double b = touch[nearest[s]].pair.beyond/h;
+    if (b <= PROXY_PAST_BEGIN) return phi;
+    sum += 1.0/(b*b*b*b);
+  }
+  const double past = pow(sum, -0.25), width = PROXY_PAST_END - PROXY_PAST_BEGIN;
+  if (past <= PROXY_PAST_BEGIN) return phi;
+  const double fade = ProxySmoothStep((PROXY_PAST_END - past)/width, &slope);
+  for (int s = 0; s < n_slots; s++) {
+    const ProxyPair *q = &touch[nearest[s]].pair;
+    const double     part = past*h/q->beyond, change = phi*slope/(width*h)*part*part*part*part*part;
+    for (int k = 0; k < 3; k++) grad[s][k] = fade*grad[s][k] - change*q->out[k];
+  }
+  return fade*phi;
+}
+
 /* phi and the gradient's part of each patch at a particle */
 static double PhiHalfSpace(const Proxy p, const double x[3], const double base[3], Touch touch[], int n, int n_slots,
                            const PetscInt slots[], const double D[], int in_front, double grad[][3])
@@ -391,7 +420,7 @@ static int ParticleHalfSpace(Chunk *c, const Proxy p, PetscInt particle, const d
   const int n = GatherHalfSpace(p, x, base, begin, end, touch, &n_slots, slots, D, &in_front);
 
   if (!n) return 1;
-  const double phi = PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, in_front, grad);
+  const double phi = FadePast(p->fluid.h, touch, n, n_slots, PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, in_front, grad), grad);
   return phi > 0.0 ? Emit(c, p, particle, x, base, phi, touch, n, D, grad) : 1;
 }
 

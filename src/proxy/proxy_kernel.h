@@ -14,6 +14,10 @@
 #define PROXY_ELLIPSOID_FADE 0.25
 /* weights end at distance h from the part of the surface that the proxy stands for, over this part of h */
 #define PROXY_FAR_FADE 0.25
+/* a particle that is past all that the proxies in reach stand for by the first part of h feels less and less of them, at the second nothing: whatever surface
+   ends there, its other side is the nearer one, or it has none. What a right angle leaves of phi there is below 1e-3. */
+#define PROXY_PAST_BEGIN 0.4
+#define PROXY_PAST_END 0.7
 /* the osculating surface is used from its own side only: weights end where 1 + c z0 falls from this to 0 (a ball's equator) */
 #define PROXY_SIDE_FADE 0.5
 
@@ -42,6 +46,7 @@ typedef struct {
   double w, grad_w[3];           /* [1], [1/m]   */
   double lambda, grad_lambda[3]; /* [1], [1/m]   */
   double z, grad_z[3];           /* [m], [1]     */
+  double beyond, out[3];         /* how far past the surface that the proxy stands for, in its tangent plane [m], and its gradient */
   double cover, grad_cover[3];   /* A w2 without the fades: its sum is 1 inside a patch, 1/2 on a straight border */
 } ProxyPair;
 
@@ -201,6 +206,7 @@ BY_HD int ProxyPairHalfSpace(int kernel, int gradient_kernel, double h, const Pr
   d            = z < 0.0 ? -z : z;
   K            = H != 0.0 ? 0.5*h*h*ProxyPlaneMoment(kernel, d, h) : 0.0;
   pair->z      = z;
+  pair->beyond = beyond;
   pair->cover  = A*w*near_side;
   pair->w      = A*w*near_side*behind*end;
   pair->lambda = SPHHalfSpace(kernel, z, h) - Hz*K;
@@ -209,6 +215,7 @@ BY_HD int ProxyPairHalfSpace(int kernel, int gradient_kernel, double h, const Pr
     const double side_k = F*near_side*t[k] + w*side_slope*b->n[k];
     pair->grad_lambda[k] = slope * pair->grad_z[k];
     pair->grad_cover[k]  = A*side_k;
+    pair->out[k]         = out[k];
     pair->grad_w[k]      = A*(side_k*behind*end + w*near_side*(behind_slope*end*pair->grad_z[k] + behind*end_slope*(z*pair->grad_z[k] + beyond*out[k])));
   }
   return 1;

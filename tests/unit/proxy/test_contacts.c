@@ -389,7 +389,33 @@ static void ellipsoids_are_one_sided_and_do_not_reach_beyond_h(void **state)
   ShapeFree(&s);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_flat_wall_is_lambda_at_every_sampling), cmocka_unit_test(the_inset_shifts_the_wall), cmocka_unit_test(a_ball_is_the_kernels_part_in_the_ball_at_every_sampling),
+/* beside an edge the other face ends it: sparse proxies, whose weights reach far, let no particle feel a face that it has left behind. The part of the
+   kernel in a box is at most that behind the plane of any of its faces. */
+static void no_face_is_felt_past_its_edge(void **state)
+{
+  const double  kappas[] = {1.0, 0.6, 0.4, 0.3}, half[3] = {2.5, 2.0, 2.0};
+  unsigned long seed = 23;
+  (void)state;
+  for (int q = 0; q < 4; q++) {
+    Shape  s = ShapeBox(half[0], half[1], half[2], 8, 8, 8);
+    Proxy  p = FixtureProxy(&s, kappas[q], PROXY_KERNEL_HALF_SPACE, 1.0, NULL);
+    double most = 0.0;
+    for (int i = 0; i < 40000; i++) {
+      double x[3], top = -1.0;
+      for (int k = 0; k < 3; k++) {
+        const double part = FixtureRandom(&seed);
+        x[k] = (half[k] + 1.1)*(2.0*part - 1.0);
+        top  = fmax(top, fabs(x[k]) - half[k]);
+      }
+      if (top > 0.5) most = fmax(most, FixturePhi(p, x, NULL) - SPHHalfSpace(SPH_CUBIC, fmin(top, 1.0), 1.0));
+    }
+    assert_close(most, 0.0, 1.0, 0.005); // the product rule's error beyond an edge
+    assert_petsc(ProxyDestroy(&p));
+    ShapeFree(&s);
+  }
+}
+
+CHECK_MAIN(cmocka_unit_test(no_face_is_felt_past_its_edge), cmocka_unit_test(a_flat_wall_is_lambda_at_every_sampling), cmocka_unit_test(the_inset_shifts_the_wall), cmocka_unit_test(a_ball_is_the_kernels_part_in_the_ball_at_every_sampling),
            cmocka_unit_test(box_edges_and_corners_are_within_the_product_rules_error), cmocka_unit_test(gradients_are_exact_on_curved_shapes),
            cmocka_unit_test(an_inner_corner_is_two_planar_walls), cmocka_unit_test(a_thin_sheet_keeps_its_sides_apart),
            cmocka_unit_test(nothing_is_felt_beyond_the_support), cmocka_unit_test(phi_integrates_to_the_kernels_exchange_across_the_surface),
