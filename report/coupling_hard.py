@@ -104,7 +104,8 @@ class Outcome:
         self.reason = f"{inside} particles inside" if inside else "not a number" if not finite else result.summary.get("reason", "")
         self.step = float(result.summary["time_end"]) / max(1, result.steps)
         live = ledger["fluid_kinetic"] + ledger["solid_kinetic"] + ledger["solid_strain"]
-        energy = live + ledger["fluid_potential"] + ledger["solid_potential"] + ledger["solid_contact_energy"] - ledger["work_motion"]
+        given = ledger["work_motion"] + ledger["solid_external_work"] - ledger["work_solid"]  # by walls that move, and by loads
+        energy = live + ledger["fluid_potential"] + ledger["solid_potential"] + ledger["solid_contact_energy"] - given
         self.gain = float(np.max(energy - energy[0]) / max(np.max(live), 1e-30))
         self.mismatch = abs(books["work_fluid"] - books["work_solid"]) / max(books["work_exchanged"], 1e-30) if "work_exchanged" in books else np.nan
         self.solves = books.get("solves_mean", 1.0)

@@ -225,6 +225,7 @@ PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
   PetscFunctionBegin;
   if (!c->setup) ByCall(CouplerSetUp(c));
   *dt = dt_max;
+  c->within_step = PETSC_TRUE;
   PetscCall(CouplerTimer(c, N_PHASES));
   if (c->sph) {
     PetscReal dt_fluid;
@@ -254,6 +255,7 @@ PetscErrorCode CouplerStep(Coupler c, PetscReal dt_max, PetscReal *dt)
   c->dt = *dt;
   c->time += *dt;
   c->step++;
+  c->within_step = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

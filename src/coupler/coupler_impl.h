@@ -90,6 +90,7 @@ struct _p_Coupler {
   Motion         wall_motion[6], frame;
   PetscBool      responds;         /* the solver takes a response                 */
   PetscBool      setup, compliant; /* compliant: some body answers within the pressure solve of this step */
+  PetscBool      within_step;      /* a step has begun and has not ended: after a breakdown bodies may be ahead of the water */
   PetscInt       n_interface;      /* unknowns of the interface                   */
   PetscReal     *interface, *residual; /* [m/s] its velocity and residual         */
   struct Relaxation *relaxation;

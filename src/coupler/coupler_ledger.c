@@ -1,7 +1,8 @@
 /* coupler_ledger.c - energies, work at the interface, momentum, errors, penetrations (method 5.4). */
 #include "coupler_impl.h"
 
-/* water particles inside a body or obstacle, by winding number of its whole closed boundary */
+/* Water particles inside a body or obstacle, by winding number of its whole closed boundary. After a breakdown within a step bodies are ahead of the
+   water: nothing can be said then. */
 static PetscErrorCode CountPenetrations(Coupler c, PetscInt *n_inside)
 {
   PetscInt         n;
@@ -11,7 +12,7 @@ static PetscErrorCode CountPenetrations(Coupler c, PetscInt *n_inside)
 
   PetscFunctionBegin;
   *n_inside = 0;
-  if (!c->sph || !c->n_surfaces) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!c->sph || !c->n_surfaces || c->within_step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SPHGetSize(c->sph, &n));
   PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
   PetscCall(PetscMalloc1(n, &winding));

@@ -4,9 +4,13 @@
    particle at impact speed, a sharp edge, a dent smaller than a support can still let one end a step inside by a tenth of dx. So before the
    particles move, those near a surface are held against its triangles at the end of the step. Where a particle would end inside it meets
    the triangle in a plastic impact, with the nodes' masses: the normal relative speed goes, momentum stays, energy never grows.
-   What is then still missing to SPH_STOP_GAP the particle is moved along the normal, without momentum. Still water never comes so near. */
+   What is then still missing to SPH_STOP_GAP the particle is moved along the normal, without momentum. Still water never comes so near. In a crevice what leads
+   out of one triangle leads into another: those that were stopped are looked at again, a few times. */
 #include "coupler_impl.h"
 #include "mat3.h"
+
+#define STOP_PASSES 4   /* how often one particle may be stopped in a step                                   */
+#define STOP_AGAIN  0.5 /* of SPH_STOP_GAP: what comes nearer by a stop elsewhere is stopped again           */
 
 typedef struct {
   PetscInt         n, n_triangles;
@@ -149,8 +153,34 @@ static PetscReal Impact(CouplerSurface *s, const Near *near, PetscInt t, PetscRe
   return J;
 }
 
-/* all particles of a surface, one after another; lost: angular momentum that the water has lost [N m s] */
-static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const Near *near, PetscReal v_nodes[], PetscReal lost[3])
+/* those that were stopped, whose ends have changed: the closest triangles again */
+static PetscErrorCode FindAgain(Near *near, PetscReal reach)
+{
+  PetscInt   n = 0, *which, *triangle;
+  PetscReal *at, *distance, *weights;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc5(near->n, &which, near->n, &triangle, 3 * near->n, &at, near->n, &distance, 3 * near->n, &weights));
+  for (PetscInt t = 0; t < near->n; t++) {
+    if (near->triangle[t] < 0) continue;
+    PetscCall(PetscArraycpy(at + 3 * n, near->at + 3 * t, 3));
+    which[n++] = t;
+  }
+  PetscCall(SurfaceClosest(n, at, near->x, near->n_triangles, near->triangles, reach, distance, triangle, weights));
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt t = which[j];
+
+    near->triangle[t] = triangle[j];
+    near->distance[t] = distance[j];
+    PetscCall(PetscArraycpy(near->weights + 3 * t, weights + 3 * j, 3));
+  }
+  PetscCall(PetscFree5(which, triangle, at, distance, weights));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All particles of a surface, one after another, that end nearer than `stop`; lost: angular momentum that the water has lost [N m s]. The others'
+   triangles are forgotten; n_stopped: how many are left. */
+static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, Near *near, PetscReal nearest, PetscReal v_nodes[], PetscReal lost[3], PetscInt *n_stopped)
 {
   CouplerSurface    *s = &c->surface[k];
   const SPHContacts *q = &c->contacts[k];
@@ -162,11 +192,16 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
   PetscCall(SPHGetParams(c->sph, &params));
   PetscCall(SPHGetState(c->sph, &x, &v, &p, &rho, &id));
   if (s->tled) PetscCall(TLEDGetMass(s->tled, &mass));
+  *n_stopped = 0;
   for (PetscInt t = 0; t < near->n; t++) {
     const PetscReal gap = (near->winding[t] > 0.5 ? -1.0 : 1.0) * near->distance[t], stop = SPH_STOP_GAP * params->spacing;
     PetscReal       normal[3], change[3], shift[3], vi[3], m[3], J;
 
-    if (near->triangle[t] < 0 || gap >= stop) continue;
+    if (near->triangle[t] < 0 || gap >= nearest) {
+      near->triangle[t] = -1;
+      continue;
+    }
+    (*n_stopped)++;
     Outward(near, t, gap < 0.0 ? -1.0 : 1.0, normal);
     for (int i = 0; i < 3; i++) vi[i] = v[3 * q->particle[t] + i];
     J = Impact(s, near, t, c->mass, vi, normal, mass, v_nodes, dt);
@@ -174,6 +209,7 @@ static PetscErrorCode StopParticles(Coupler c, PetscInt k, PetscReal dt, const N
       change[i] = J / c->mass * normal[i];
       shift[i]  = PetscMax(0.0, stop - gap - dt * J / c->mass) * normal[i];
       vi[i] += change[i];
+      near->at[3 * t + i] += dt * change[i] + shift[i];
       s->total[i] -= c->mass * change[i] / dt;
     }
     PetscCall(SPHStop(c->sph, q->particle[t], change, shift));
@@ -195,6 +231,8 @@ static PetscErrorCode StopAtSurface(Coupler c, PetscInt k, PetscReal dt)
   PetscReal       lost[3] = {0, 0, 0}, before[3], after[3], *v = NULL;
   PetscBool       is_free = PETSC_FALSE;
   Vec             U, V = NULL, F;
+  SPHParams      *params;
+  PetscInt        n_stopped;
   Near            near;
 
   PetscFunctionBegin;
@@ -206,7 +244,13 @@ static PetscErrorCode StopAtSurface(Coupler c, PetscInt k, PetscReal dt)
     PetscCall(TLEDGetVectors(s->tled, &U, &V, &F));
     PetscCall(VecGetArray(V, &v));
   }
-  PetscCall(StopParticles(c, k, dt, &near, v, lost));
+  PetscCall(SPHGetParams(c->sph, &params));
+  PetscCall(StopParticles(c, k, dt, &near, SPH_STOP_GAP * params->spacing, v, lost, &n_stopped));
+  for (int pass = 1; pass < STOP_PASSES && n_stopped; pass++) {
+    PetscCall(FindAgain(&near, 0.5 * params->spacing));
+    PetscCall(FindInside(&near));
+    PetscCall(StopParticles(c, k, dt, &near, STOP_AGAIN * SPH_STOP_GAP * params->spacing, v, lost, &n_stopped));
+  }
   if (s->tled) PetscCall(VecRestoreArray(V, &v));
   if (is_free) {
     // impulses act where particles and nodes are at different instants: a free body gets the difference
