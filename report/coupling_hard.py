@@ -51,9 +51,9 @@ def on_sheet(young, pool, block, velocity):
 
 
 def squeezed():
-    """a block pressed flat in a pit that it fills nearly: it bulges against floor and four walls, and the water has to leave"""
-    return with_block(tank(0.14), "cube", [0.02, 0.02, 0.004], scale=0.2, young=5e4, poisson=0.45, density=1000, loads=["press"],
-                      press={"groups": ["top"], "traction": [0, 0, -2.5e4], "course": "ramp", "duration": 0.2})
+    """a soft block whose top is pressed down by a third in a pit that it nearly fills: it bulges against floor and four walls, and the water has to leave"""
+    return with_block(tank(0.14), "cube", [0.02, 0.02, 0.004], scale=0.2, young=5e4, poisson=0.45, density=1000, contact_stiffness=4e7, constraints=["press"],
+                      press={"kind": "motion", "groups": ["top"], "translation": [0, 0, -0.07], "course": "ramp", "duration": 0.25})
 
 
 def three_faces():
