@@ -10,12 +10,12 @@ from sections import claim
 
 DX, SIDE = 0.02, 0.24
 SCHEMES = ("explicit", "iterated", "mass")
-FACTORS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # of the mean step that the program takes by itself
+FACTORS = (2.0, 1.0, 0.5, 0.25)                  # of the mean step that the program takes by itself
 GAIN = 0.05                                  # energy that may appear, over the largest kinetic and elastic energy, in a run that counts as stable
 
 HARD = """Each a small scene ({few} to {many} particles of {mm:g} mm, up to {nodes:,} nodes) with each scheme, run by the program's own step. **Outcome**: *yes* = ran to its end, no particle inside a
 body, every number finite; *stopped* = the run ended with a message that names step, place and reason; *refused* = the program said so before anything ran. Then the longest fixed
-step `sph.time_step` that still gives a run to the end without penetration whose energy never grows by more than {gain:g} % of its largest kinetic and elastic energy, of 1/8 to 4 of
+step `sph.time_step` that still gives a run to the end without penetration whose energy never grows by more than {gain:g} % of its largest kinetic and elastic energy, of 1/4 to 2 of
 the mean step that the program takes by itself (in brackets this factor; a free-surface flow has its own bound), and of the program's own run the energy that appeared and the work at the
 interface that water and body disagree on, over the work exchanged, and the solves a step."""
 
