@@ -17,6 +17,7 @@ TIGHT = {"tolerance": 1e-6, "precision": "double"}  # of the fluid: what is comp
 SCHEMES = {
     "explicit": {"scheme": "explicit"},
     "mass": {"scheme": "mass"},
+    "mass, beta 1/12": {"scheme": "mass", "response_beta": 1 / 12},
     "iterated": {"scheme": "iterated"},
     "iterated, no response": {"scheme": "iterated", "response": False},
     "iterated, no response, Aitken": {"scheme": "iterated", "response": False, "relaxation": "aitken"},
@@ -131,7 +132,7 @@ def piston_run(ratio, steps, name, tag="", **sph):
     period = STEPS_DEFAULT * 0.05 * math.sqrt(2 * DX / GRAVITY)
     scene = piston_scene(ratio, period / steps, SCHEMES[name])
     scene["sph"].update(sph)
-    word = name.replace(",", "").replace(" ", "_")
+    word = name.replace(",", "").replace(" ", "_").replace("/", "_")
     result = flow(f"piston_{word}_{ratio:g}_{steps}{tag}", scene, end=PERIODS * period, output_every=period / steps * max(1, steps // 80), fields_every=PERIODS * period, allowed=("done", "breakdown"))
     nominal, water = DENSITY * LAYERS * DX, water_mass(result) / WIDTH**2
     exact = piston_exact(ratio, nominal, water)
