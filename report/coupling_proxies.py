@@ -20,8 +20,8 @@ RESAMPLE = """Proxies move with their triangles; the surface is sampled afresh w
 step, as published. First without a fluid: a ball of radius 5 dx (mesh of h/5) becomes an ellipsoid of the same volume, 1.8 times as long, in 60 steps; errors of phi at 300 points within h
 off the surface over all steps, against the kernel's part in the ellipsoid (`bench.contacts -stretch`); milliseconds of an update, samplings included, on one thread."""
 
-FLAP = """Then `examples/flap` with a spacing of 20 mm and a flap four times as soft (0.5 MPa), 1 s: its tip against that of the run that samples every step, rms over the largest way; processor
-seconds of the phase `proxies` (update and contacts) of the run's."""
+FLAP = """Then `examples/flap` with a spacing of 20 mm and a flap four times as soft (0.5 MPa), 1 s: its tip against that of the run that samples every step, rms over the largest way, as far as its first peak (0.4 s) and in all; share of the
+phase `proxies` (update and contacts) in the run's time. A splash is chaotic: the last row is the run that samples every step with water that starts at a micrometre a second."""
 
 RESTING = """Still water (`sph.settle`), dx = 20 mm, mean of the last 0.5 s of 0.8. A cube of 5 dx, an obstacle, hangs over the floor. As long as the gap is narrower than particles, no water is
 between: it carries the water above it. Proxies that look at a wall from less than 0.5 dx stop acting, smoothly, altogether from 0.15 dx on (`src/proxy/proxy_wall.c`). With faces that
@@ -62,13 +62,13 @@ def bench(arguments, mark):
     return [[cell.strip() for cell in line[len(mark):].split("|")] for line in done.stdout.splitlines() if line.startswith(mark)]
 
 
-def flap(tolerance):
-    scene = tank((0, 0, 0), (1.0, 0.24, 0.5), fills={"column": {"min": [0, 0, 0], "max": [0.3, 0.24, 0.35]}}, spacing=DX)
+def flap(tolerance, velocity=0.0, name=""):
+    scene = tank((0, 0, 0), (1.0, 0.24, 0.5), fills={"column": {"min": [0, 0, 0], "max": [0.3, 0.24, 0.35], "velocity": [velocity, 0, 0]}}, spacing=DX)
     scene["bodies"] = ["flap"]
     scene["flap"] = {"mesh": str(ROOT / "meshes" / "flap.msh"), "density": 1100, "young": 5e5, "poisson": 0.45, "fixed": ["root"], "wetted": ["skin"],
                      "proxy": {"resample_tolerance": tolerance}}
     scene = with_probes(scene, tip={"body": "flap", "at": [0.55, 0.12, 0.2], "quantity": "displacement"})
-    return flow(f"resample_flap_{tolerance}", scene, end=1.0, output_every=0.01, fields_every=0.5)
+    return flow(f"resample_flap_{tolerance}{name}", scene, end=1.0, output_every=0.01, fields_every=0.5)
 
 
 def resample():
@@ -79,13 +79,15 @@ def resample():
         rows.append([tolerance, *row[1:]])
     first = table(["tolerance", "kappa-bar", "samplings", "proxies", "update, ms", "mean error", "rms", "largest"], rows)
     runs = {tolerance: flap(tolerance) for tolerance in TOLERANCES}
-    tip, rows = {k: np.stack([r.probes[f"tip_{a}"] for a in "xyz"]) for k, r in runs.items()}, []
-    largest = np.max(np.linalg.norm(tip[0], axis=0))
-    for tolerance, r in runs.items():
-        error = rms(np.linalg.norm(tip[tolerance] - tip[0], axis=0)) / largest
+    stirred = flap(0, 1e-6, "_stirred")
+    way = {name: np.stack([r.probes[f"tip_{a}"] for a in "xyz"]) for name, r in (*runs.items(), ("stirred", stirred))}
+    largest, early, rows = np.max(np.linalg.norm(way[0], axis=0)), runs[0].probes["time"] < 0.4, []
+    for name, r in (*runs.items(), ("stirred", stirred)):
+        apart = np.linalg.norm(way[name] - way[0], axis=0) / largest
         body, spent = r.summary["bodies"]["flap"], r.summary["phases"]["proxies"] / sum(r.summary["phases"].values())
-        rows.append(["every step" if tolerance == 0 else tolerance, body["samplings"], f"{body['proxies_mean']:.0f}", percent(spent, 1), percent(error)])
-        worst = max(worst, error if tolerance <= 0.1 else 0.0)
+        rows.append(["every step" if name == 0 else "every step, stirred" if name == "stirred" else name, body["samplings"], f"{body['proxies_mean']:.0f}", percent(spent, 1),
+                     percent(rms(apart[early])), percent(rms(apart))])
+        worst = max(worst, rms(apart[early]) if name in (0.02, 0.1) else 0.0)
     steps = runs[0].steps
     drawn, axes = draw.figure(1, width=6.5, height=3.6)
     draw.curves(axes, [("every step" if k == 0 else f"tolerance {k}", r.probes["time"], 1000 * r.probes["tip_x"]) for k, r in reversed(runs.items())], xlabel="time [s]", ylabel="tip, along the stream [mm]")
@@ -93,9 +95,9 @@ def resample():
     ratio = float(by["0", "1"][4]) / float(by["0.1", "1"][4])
     more = max(abs(float(by["0.1", eta][6]) / float(by["0", eta][6]) - 1) for eta in ("1", "0.4"))
     claim("sampling afresh at 0.1 against every step: error of phi, rms", f"{percent(more, 0)} apart, {ratio:.1f} times cheaper", "", "10 %", more < 0.1)
-    claim("the same: tip of a flap", percent(worst), "", "2 %", worst < 0.02)
+    claim("the same: tip of a flap as far as its peak", percent(worst), "", "2 %", worst < 0.02)
     return (RESAMPLE + "\n\n" + first + "\n" + FLAP + f" The run takes {steps} steps.\n\n"
-            + table(["tolerance", "samplings", "proxies in use, mean", "phase proxies of the run", "tip, off by"], rows) + draw.save(drawn, "resample", "tip of the flap over time by tolerance"))
+            + table(["tolerance", "samplings", "proxies in use, mean", "phase proxies of the run", "tip, off by, to its peak", "in all"], rows) + draw.save(drawn, "resample", "tip of the flap over time by tolerance"))
 
 
 def over_floor(name, points, triangles, low, size, depth=0.2):
