@@ -26,3 +26,7 @@ byssus_run_test(coupled surface)
 byssus_run_test(coupled floating_ball)
 byssus_run_test(hard coupling)
 byssus_run_test(regression examples)
+
+foreach(topic relaxation schemes)
+  byssus_test(unit/coupler/test_${topic} base sph tled proxy coupler)
+endforeach()

@@ -144,6 +144,8 @@ BY_EXTERN PetscErrorCode CouplerGetBody(Coupler coupler, PetscInt k, TLED *tled,
 BY_EXTERN PetscErrorCode CouplerGetTime(Coupler coupler, PetscReal *time, PetscInt *step);
 /* force of the fluid on body (or, counting on, obstacle) k during the last step [N] */
 BY_EXTERN PetscErrorCode CouplerGetForce(Coupler coupler, PetscInt k, PetscReal force[3]);
+/* name of the scheme that body k runs with; after CouplerSetUp() */
+BY_EXTERN PetscErrorCode CouplerGetScheme(Coupler coupler, PetscInt k, const char *name[]);
 BY_EXTERN PetscErrorCode CouplerGetBreakdown(Coupler coupler, const char **message);
 
 /* A row of the ledger (method 5.4). */

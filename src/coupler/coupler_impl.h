@@ -129,7 +129,6 @@ PETSC_INTERN PetscErrorCode CouplerResponseDestroy(CouplerResponse *response);
 /* scheme_select.c */
 PETSC_INTERN PetscErrorCode CouplerSelectSchemes(Coupler coupler);
 PETSC_INTERN const char    *CouplerSchemeName(Coupler coupler); /* of the body that needs most */
-PETSC_INTERN const char    *CouplerBodyScheme(const CouplerSurface *s);
 PETSC_INTERN PetscErrorCode CouplerViewSchemes(Coupler coupler, PetscViewer viewer);
 /* coupler_ledger.c */
 PETSC_INTERN PetscErrorCode CouplerGetBalance(Coupler coupler, PetscReal *balance);

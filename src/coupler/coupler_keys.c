@@ -83,7 +83,7 @@ const Key CouplerKeys[] = {
   {"relaxation",     KEY_CHOICE, ROW(CouplerParams, relaxation),     "",  "iqn_ils", 0, 0, 0, relaxations, "of the interface's velocity in iterations: quasi-Newton by least squares, or one factor by Aitken"},
   {"relaxation_start", KEY_REAL, ROW(CouplerParams, relaxation_start), "1", "0.05", 0, 2, KEY_LO_OPEN, NULL, "first factor of scheme iterated without response"},
   {"response",       KEY_BOOL,   ROW(CouplerParams, response),       "",  "true", 0, 0, 0, NULL, "iterated: the bodies answer within each pressure solve as in scheme mass, a first guess of the Jacobian, where sph.solver takes it; false = the textbook's iteration between fluid and body as they are"},
-  {"reuse",          KEY_INT,    ROW(CouplerParams, reuse),          "1", "3", 0, 50, 0, NULL, "steps whose differences iqn_ils keeps"},
+  {"reuse",          KEY_INT,    ROW(CouplerParams, reuse),          "1", "8", 0, 50, 0, NULL, "steps whose differences iqn_ils keeps"},
   {"tolerance",      KEY_REAL,   ROW(CouplerParams, tolerance),      "1", "1e-3", 0, 1, 0, NULL, "iterations end when the interface's mean velocity over the step, of fluid and body, agree by this, relative, rms"},
   {"iterations",     KEY_INT,    ROW(CouplerParams, iterations),     "1", "20", 1, 1000, 0, NULL, "most pressure solves a step of scheme iterated"},
   {"forces",         KEY_CHOICE, ROW(CouplerParams, forces),         "",  "held", 0, 0, 0, force_names, "of the fluid on a body over its substeps: constant, or linear through the change since the last step; the impulse is the same"},

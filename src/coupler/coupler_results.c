@@ -213,6 +213,7 @@ static PetscErrorCode SummaryBodies(Coupler c, Json json)
     CouplerSurface *s = &c->surface[k];
     PetscInt        n_nodes, n_tets;
     PetscReal       added;
+    const char     *scheme;
 
     PetscCall(JsonBegin(json, s->name));
     if (s->tled) {
@@ -222,7 +223,8 @@ static PetscErrorCode SummaryBodies(Coupler c, Json json)
       PetscCall(TLEDGetAddedMass(s->tled, NULL, &added));
       PetscCall(JsonReal(json, "added_mass_percent", added));
       if (c->sph) {
-        PetscCall(JsonString(json, "scheme", CouplerBodyScheme(s)));
+        PetscCall(CouplerGetScheme(c, k, &scheme));
+        PetscCall(JsonString(json, "scheme", scheme));
         PetscCall(JsonReal(json, "water_over_mass", s->water));
         if (s->stiffness >= 0.0) PetscCall(JsonReal(json, "omega_dt", PetscSqrtReal(s->stiffness)));
       }

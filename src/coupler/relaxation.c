@@ -155,7 +155,8 @@ static void Orthogonalise(Relaxation *r, PetscReal R[][RELAXATION_COLUMNS])
 }
 
 /* Interface quasi-Newton: with the differences V of residuals and W of H, c = argmin |V c + r| and x <- x + r + W c. What V does not span
-   moves by the plain residual; before anything is known, by `start` times it. */
+   moves by the plain residual (by `start` times it a block under water took twice the evaluations: what does not move is not learnt); before
+   anything is known, by `start` times it. */
 static void QuasiNewton(Relaxation *r, PetscReal x[], const PetscReal residual[])
 {
   PetscReal R[RELAXATION_COLUMNS][RELAXATION_COLUMNS], c[RELAXATION_COLUMNS];

@@ -10,7 +10,7 @@ typedef enum { RELAXATION_IQN_ILS, RELAXATION_AITKEN } RelaxationKind;
 
 #define RELAXATION_COLUMNS 64   /* differences kept at most, the newest                                                        */
 #define RELAXATION_FILTER  1e-2 /* a difference whose part outside those newer than it is smaller than this is left out        */
-#define RELAXATION_NOISE   0.1  /* of the largest difference of a step: smaller ones are not kept for the next steps           */
+#define RELAXATION_NOISE   0.01  /* of the largest difference of a step: smaller ones are not kept for the next steps           */
 
 typedef struct Relaxation {
   int        kind;                         /* RelaxationKind                                                                  */

@@ -109,7 +109,12 @@ PetscErrorCode CouplerSelectSchemes(Coupler c)
 
 static const char *const scheme_names[] = {"auto", "explicit", "iterated", "mass"};
 
-const char *CouplerBodyScheme(const CouplerSurface *s) { return s->proxy ? scheme_names[s->scheme] : "none"; }
+PetscErrorCode CouplerGetScheme(Coupler c, PetscInt k, const char *name[])
+{
+  PetscFunctionBegin;
+  *name = c->surface[k].proxy && c->surface[k].tled ? scheme_names[c->surface[k].scheme] : "none";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* one line a body: its scheme and why */
 PetscErrorCode CouplerViewSchemes(Coupler c, PetscViewer viewer)
