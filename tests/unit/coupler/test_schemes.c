@@ -26,7 +26,7 @@ static void Run(Coupler c, int steps)
 {
   PetscReal dt;
 
-  for (int n = 0; n < steps; n++) assert_petsc(CouplerStep(c, 1.0, &dt));
+  for (int n = 0; n < steps; n++) assert_petsc(CouplerStep(c, 1e-3, &dt));
 }
 
 static void Scheme(const char keys[], const char expected[])
@@ -109,7 +109,7 @@ static void interpolated_forces_have_the_same_impulse(void **state)
   Run(c, 4);
   for (int n = 0; n < 4; n++) {
     assert_petsc(TLEDGetStats(tled, &before));
-    assert_petsc(CouplerStep(c, 1.0, &dt));
+    assert_petsc(CouplerStep(c, 1e-3, &dt));
     assert_petsc(TLEDGetStats(tled, &after));
     assert_petsc(CouplerGetForce(c, 0, force));
     assert_petsc(TLEDGetSubsteps(tled, dt, &substeps));
