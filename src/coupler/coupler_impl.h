@@ -17,6 +17,7 @@ typedef struct {
   Vec       rhs, solution;
   PetscReal dt;     /* [s] step for which the matrix was made; 0 = none yet */
   PetscReal dt_step; /* [s] the current step                                 */
+  PetscReal share;   /* of dt/2: 1 with held forces                           */
   PetscReal *at;     /* n x 3 [m] displacement of which it is made            */
   PetscInt  age;     /* steps since the matrix was made                      */
 } CouplerResponse;

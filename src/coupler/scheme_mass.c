@@ -116,6 +116,18 @@ PetscErrorCode CouplerResponseMake(Coupler c, CouplerSurface *s, PetscReal dt)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What forces do to the mean velocity over that of held ones: those that are linear in time over n substeps come later, and their way is shorter by the first
+   moment of their change */
+static PetscErrorCode SetShare(Coupler c, CouplerSurface *s, PetscReal dt)
+{
+  PetscInt n = 1;
+
+  PetscFunctionBegin;
+  if (c->params.forces == COUPLER_FORCES_INTERPOLATED) ByCall(TLEDGetSubsteps(s->tled, dt, &n));
+  s->response.share = 1.0 - (1.0 - 1.0 / ((PetscReal)n * (PetscReal)n)) / 3.0 * dt / (dt + (c->dt > 0.0 ? c->dt : dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* matrix of the response for the current state and step; made again when the step or the body has changed */
 PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
 {
@@ -124,6 +136,7 @@ PetscErrorCode CouplerResponseSetUp(Coupler c, CouplerSurface *s, PetscReal dt)
   Vec              U, V, F;
 
   PetscFunctionBegin;
+  ByCall(SetShare(c, s, dt));
   r->dt_step = dt;
   if (r->dt > 0.0 && PetscAbsReal(dt / r->dt - 1.0) < 0.05 && r->age++ < c->params.response_every) PetscFunctionReturn(PETSC_SUCCESS);
   if (!r->at) PetscCall(PetscMalloc1(3 * s->n_nodes, &r->at));
@@ -148,7 +161,7 @@ PetscErrorCode CouplerResponseSolve(CouplerSurface *s, const PetscReal force[], 
   for (PetscInt a = 0; a < s->n_nodes; a++) {
     PetscCall(TLEDGetProjector(s->tled, a, &P));
     Free(P, &force[3 * a], &b[3 * a]);
-    for (int k = 0; k < 3; k++) b[3 * a + k] *= 0.5 * r->dt_step;
+    for (int k = 0; k < 3; k++) b[3 * a + k] *= 0.5 * r->dt_step * r->share;
   }
   PetscCall(VecRestoreArrayWrite(r->rhs, &b));
   PetscCall(KSPSolve(r->ksp, r->rhs, r->solution));

@@ -169,6 +169,8 @@ PetscErrorCode TLEDSave(TLED tled)
   PetscCall(PetscArraycpy(tled->saved + 2 * n, tled->force, n));
   PetscCall(PetscArraycpy(tled->saved + 3 * n, tled->mode, n));
   if (tled->n_history) PetscCall(PetscArraycpy(tled->saved_history, tled->loops.history, tled->n_history));
+  PetscCall(PetscObjectStateGet((PetscObject)tled->v, &state));
+  if (state != tled->speed_state) tled->state.put_in = 0.0; /* v was changed from outside: its energy is another, after TLEDRestore() too */
   PetscCall(PetscObjectStateGet((PetscObject)tled->u, &state));
   tled->saved_state       = tled->state;
   tled->saved_substeps    = tled->substeps;
