@@ -186,7 +186,7 @@ def paper():
     scene, tets = bunny(spacing)
     first = Study("paper_bunny", scene, SAMPLINGS, "fine", END)
     scene, tets_octopus = octopus(spacing)
-    second = Study("paper_octopus", scene, {n: v for n, v in SAMPLINGS.items() if n != "ours, adaptive, again"}, "fine", END)
+    second = Study("paper_octopus", scene, {n: v for n, v in SAMPLINGS.items() if n not in ("ours, uniform", "ours, adaptive, again")}, "fine", END)
     text = PAPER_TEXT.format(n=" and ".join(f"{study.number('fine', 'particles'):,.0f}" for study in (first, second)), spacing=1e3 * spacing, end=END, tets=f"{tets:,}", tets_octopus=f"{tets_octopus:,}")
     for study in (first, second):
         text += f"\n**{study.body}**\n\n" + study_table(study, "fine") + compared(study)
