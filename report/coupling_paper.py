@@ -231,11 +231,9 @@ def moments(study):
 
 FEWEST_KEYS = (*KEYS, "eta_min", "eta_max")
 FEWEST = {
-    "uniform, 0.7": ("half_space", 0.7, "robust", "true", 0.1, 0.4, 1),
     "uniform, 0.5": ("half_space", 0.5, "robust", "true", 0.1, 0.4, 1),
     "uniform, 0.35": ("half_space", 0.35, "robust", "true", 0.1, 0.4, 1),
     "adaptive, 0.3 to 0.7": ("half_space", 0, "robust", "true", 0.1, 0.3, 0.7),
-    "adaptive, 0.2 to 0.5": ("half_space", 0, "robust", "true", 0.1, 0.2, 0.5),
 }
 FEWEST_TEXT = """The bunny of `paper`, sampled ever more coarsely: density of the proxies along a line over that of the particles, uniform or from the flattest to the most curved parts (`kappa`, or
 `eta_min` and `eta_max`). Force of the water on the bunny, means over 6 ms, against *fine*: rms of the difference, and difference of the means over time, over the largest force.
