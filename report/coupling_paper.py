@@ -27,7 +27,6 @@ SAMPLINGS = {
     "ours, uniform": ("half_space", 1, "robust", "true", 0.1),
     "ours, adaptive": ("half_space", 0, "robust", "true", 0.1),
     "fine": ("half_space", 2, "robust", "true", 0.1),
-    "ours, every step": ("half_space", 0, "robust", "true", 0),
 }
 PAPER = {"uniform": 32666, "adaptive": 7055, "fps": (5.6, 19.3), "particles": 25920}
 END = 0.04  # [s] of these runs
@@ -173,7 +172,7 @@ directory that has `bunny.off` and `octopus.msh`.
 - *paper, uniform*: boundary particles at spacing h/2 with spherical support (`kernel: sphere, kappa: 1, thin: false, resample_tolerance: 0`): a proxy at every vertex, sampled afresh every step.
 - *paper, adaptive*: ellipsoids, Gaussian curvature from its smallest to its largest value onto 0.4 to 1 (`kernel: ellipsoid, measure: gaussian, range: minmax, thin: false, resample_tolerance: 0`).
 - *ours*: the defaults (half-space profile, robust range, thinned, sampled afresh when an edge or area has changed by a tenth), and the same with `adaptive: false`.
-- *fine*: ours, uniform at spacing h/4: the reference. *ours, every step*: adaptive, sampled afresh every step.
+- *fine*: ours, uniform at spacing h/4: the reference.
 
 Force (N) and moment (about the base) of the water on the body, means over 2 ms; displacement of a point of the bunny's back, an arm's tip. Errors: rms over time of the difference, and difference of the means over
 time, both over the largest value in *fine*. Proxies are counted on the whole surface, as the paper places them, and in use: where no water is near none are placed, for every sampling alike.
@@ -185,13 +184,11 @@ def paper():
     scene, tets = bunny(spacing)
     first = Study("paper_bunny", scene, SAMPLINGS, "fine", END)
     scene, tets_octopus = octopus(spacing)
-    second = Study("paper_octopus", scene, {n: v for n, v in SAMPLINGS.items() if n not in ("ours, uniform", "ours, every step")}, "fine", END)
+    second = Study("paper_octopus", scene, {n: v for n, v in SAMPLINGS.items() if n != "ours, uniform"}, "fine", END)
     text = PAPER_TEXT.format(n=" and ".join(f"{study.number('fine', 'particles'):,.0f}" for study in (first, second)), spacing=1e3 * spacing, end=END, tets=f"{tets:,}", tets_octopus=f"{tets_octopus:,}")
     for study in (first, second):
         text += f"\n**{study.body}**\n\n" + study_table(study, "fine") + compared(study)
         shown = [n for n in ("paper, uniform", "paper, adaptive", "ours, adaptive", "fine") if n in study.done]
-        if study is first and "ours, every step" in study.done:
-            text += f"\n*ours, every step* against *ours, adaptive*: force {two(study.off('ours, every step', 'ours, adaptive', 'load'))}: the same number of proxies in other places.\n"
         text += draw_study(study, shown, f"paper_{study.body}", f"force, moment, tip of the {study.body}, each sampling")
     text += moments(first)
     return text
