@@ -11,7 +11,7 @@ enum { PART_PLANE, PART_BALL, PART_CYLINDER, PART_BOX, PART_ELLIPSOID, PART_WAVE
 
 #define PART_CROSSINGS 8  /* most crossings of a ray with a surface within h */
 #define PART_TABLE     4000
-#define PART_POLAR     40 /* directions: Gauss points in the cosine, twice as many around */
+#define PART_POLAR     80 /* directions: Gauss points in the cosine, twice as many around */
 
 /* half axes of ball, ellipsoid, box; of the cylinder radius, radius, half length; of waves amplitude, amplitude, length */
 typedef struct {

@@ -8,8 +8,8 @@
    shapes: the surface of a body whose part of the kernel is known (bench_parts.h), meshed at h/4, sampled by every measure at several densities, for every
    kernel. Points fill the water within h of the body as a Halton sequence does. With hydrostatic pressure p, zero at twice the body's half height above its
    middle, the force on the body is the integral of p grad phi over the water; the same points serve the exact phi, so that only the difference counts. Prints
-   `shape: name | kernel | measure | eta | proxies | force | moment | load | mean | rms | seconds`: force's error over the exact force, moment's over force times
-   half height, integral of p |error of grad phi| over that of p |grad phi|, mean and rms error of phi, processor seconds to sample and place. Half-space proxies without their
+   `shape: name | kernel | measure | eta | proxies | force | moment | load | mean | rms | largest | seconds`: force's error over the exact force, moment's over force times
+   half height, integral of p |error of grad phi| over that of p |grad phi|, mean, rms and largest error of phi, processor seconds to sample and place. Half-space proxies without their
    calibrated inset and factor, which the exact part does not have; ellipsoids and spheres as they are calibrated, which phi does not describe: their
    force and load are scaled by the force of their densest uniform sampling, so that what is left is what a sampling does.
 
@@ -144,7 +144,7 @@ static PetscErrorCode Row(int shape, const Shape *mesh, const Water *w, int kern
   SPHContacts              c;
   Proxy                    proxy;
   PetscInt                 n;
-  double                   mean = 0.0, square = 0.0, load = 0.0, force[3], moment[3], seconds;
+  double                   mean = 0.0, square = 0.0, load = 0.0, largest = 0.0, force[3], moment[3], seconds;
 
   PetscFunctionBegin;
   PetscCall(Sampled(mesh, kernel, measure, eta, &proxy));
@@ -162,7 +162,8 @@ static PetscErrorCode Row(int shape, const Shape *mesh, const Water *w, int kern
       AddPush(w, i, &w->grad[3*i], &exact);
       AddPush(w, i, g, &got);
       load += w->pressure[i]*w->volume*Norm3(d);
-      if (pass) mean += ((touched ? c.phi[t] : 0.0) - w->phi[i])/w->n, square += PetscSqr((touched ? c.phi[t] : 0.0) - w->phi[i])/w->n;
+      const double off = (touched ? c.phi[t] : 0.0) - w->phi[i];
+      if (pass) mean += off/w->n, square += off*off/w->n, largest = fmax(largest, fabs(off));
       t += touched;
     }
     if (pass == 0 && kernel != PROXY_KERNEL_HALF_SPACE && measure == 0 && eta == 1.0) *scale = Dot3(exact.force, exact.force)/Dot3(got.force, exact.force);
@@ -170,8 +171,8 @@ static PetscErrorCode Row(int shape, const Shape *mesh, const Water *w, int kern
   Sub3(got.force, exact.force, force);
   Sub3(got.moment, exact.moment, moment);
   const double size = Norm3(exact.force);
-  printf("shape: %s | %s | %s | %g | %d | %.3e | %.3e | %.3e | %.2e | %.2e | %.3f\n", shapes[shape], kernels[kernel], measures[measure], eta, (int)n, Norm3(force)/size,
-         Norm3(moment)/(size*w->half), load/exact.load, mean, sqrt(square), seconds);
+  printf("shape: %s | %s | %s | %g | %d | %.3e | %.3e | %.3e | %.2e | %.2e | %.2e | %.3f\n", shapes[shape], kernels[kernel], measures[measure], eta, (int)n, Norm3(force)/size,
+         Norm3(moment)/(size*w->half), load/exact.load, mean, sqrt(square), largest, seconds);
   PetscCall(ProxyDestroy(&proxy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
