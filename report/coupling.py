@@ -14,6 +14,7 @@ from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
 from coupling_paper import convergence, fewest, paper
 from coupling_proxies import resample, resting
+from coupling_schemes import conservation, work
 from coupling_shapes import affine, shapes
 from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
@@ -30,6 +31,8 @@ SECTIONS = (
     ("gate", "A dam breaks through an elastic gate", gate),
     ("obstacle", "A dam breaks on an elastic obstacle", obstacle),
     ("blade", "A flexible blade in a current", blade),
+    ("conservation", "Momentum of a closed system", conservation),
+    ("work", "Work at the interface", work),
     ("piston", "Added mass: a piston under a column", piston),
     ("plate_ladder", "Added mass: a clamped plate under a column", plate_ladder),
     ("hard", "Hard cases", hard),
