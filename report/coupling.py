@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 from coupling_blade import blade
 from coupling_hard import hard
 from coupling_ladder import piston, plate_ladder
-from coupling_paper import convergence, fewest, paper
+from coupling_paper import convergence, fewest, octopus, paper
 from coupling_proxies import resample, resting
 from coupling_schemes import conservation, work
 from coupling_shapes import affine, shapes
@@ -20,7 +20,8 @@ from coupling_validation import gate, hydrostatic_plate, obstacle
 from sections import main
 
 SECTIONS = (
-    ("paper", "The paper's scenes: a bunny and an octopus", paper),
+    ("paper", "The paper's scene: water on a bunny", paper),
+    ("octopus", "The same on an octopus", octopus),
     ("fewest", "The fewest proxies for the bunny", fewest),
     ("convergence", "The paper's convergence study", convergence),
     ("affine", "Sparse proxies on a plane", affine),
