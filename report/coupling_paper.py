@@ -119,7 +119,7 @@ class Study:
         if reference in broken:
             raise Failure(f"{name}: the reference run is {self.rows[reference]['status']}")
         self.done = [n for n in texts if n not in broken]
-        self.probes = {n: as_arrays(directory / self.rows[n]["run"] / "probes.csv") for n in self.done}
+        self.probes = {n: as_arrays(directory / self.rows[n]["run"] / "probes.csv") for n in self.done if scene.get("probes")}
         self.summary = {n: read_json(directory / self.rows[n]["run"] / "summary.json") for n in self.done}
         self.sampled = {n: self.summary[n]["bodies"][body]["proxies_sampled"] for n in self.done}  # of the whole surface, wet or dry
         say(f"{name}: {time.time() - start:.0f} s")
@@ -287,22 +287,34 @@ rest. Q: particles within the support radius of a proxy, and as deep below the l
 """
 
 
+def without_rigid(x, v):
+    """velocities less those of the rigid motion nearest to them"""
+    r = x - x.mean(axis=0)
+    turn = np.zeros((len(x), 3, 6))
+    turn[:, :, :3] = np.eye(3)
+    for k in range(3):
+        turn[:, :, 3 + k] = np.cross(np.eye(3)[k], r)
+    motion = np.linalg.lstsq(turn.reshape(-1, 6), v.ravel(), rcond=None)[0]
+    return v - (turn @ motion)
+
+
 def near_body(study, name, level, h):
-    """times and mean density of the particles near the proxies; mean nodal speed"""
+    """times and mean density of the particles near the proxies; mean nodal speed, all and without the body's rigid motion"""
     from run import Series  # of src/plot, which draw has put on the path
 
     directory = study.directory / study.rows[name]["run"]
     fluid, proxies, body = (Series(str(directory / f"{n}.vtkhdf")) for n in ("fluid", "ball_proxies", "ball"))
-    times, density, speed = np.array(fluid.times), [], []
+    times, density, speed, bending = np.array(fluid.times), [], [], []
     for k in range(fluid.n_steps):
         x, rho, b = fluid.points(k), fluid.field("density", k), proxies.points(k)
         deep = x[:, 2] < level - h
         near = [len(b) > 0 and np.min(np.sum((b - p) ** 2, axis=1)) < h * h for p in x[deep]]
         density.append(np.mean(rho[deep][near]) if np.any(near) else math.nan)
         speed.append(np.mean(np.linalg.norm(body.field("velocity", k), axis=1)))
+        bending.append(np.mean(np.linalg.norm(without_rigid(body.points(k), body.field("velocity", k)), axis=1)))
     for series in (fluid, proxies, body):
         series.close()
-    return times, np.array(density), np.array(speed)
+    return times, np.array(density), np.array(speed), np.array(bending)
 
 
 def convergence():
@@ -312,22 +324,25 @@ def convergence():
              "bodies": ["ball"], "ball": {"mesh": str(ROOT / "meshes" / "ball.msh"), "translate": [0, 0, 0.292], "density": 900, "young": 5e4, "poisson": 0.45}}
     study = Study("convergence", scene, SUPPORTS, None, end, output_every=0.02, fields_every=0.04)
     level = 0.192 + 0.9 * 4 / 3 * math.pi * 0.08**3 / 0.32**2
-    figure, axes = draw.figure(2, width=11, height=3.9)
-    rows, lines, particles = [], ([], []), 0
+    figure, axes = draw.figure(3, width=13.5, height=3.9)
+    rows, lines, particles = [], ([], [], []), 0
     for name in study.done:
-        times, density, speed = near_body(study, name, level, 2 * spacing)
+        times, density, speed, bending = near_body(study, name, level, 2 * spacing)
         late = times > 0.8 * end
         rest, still = float(np.nanmean(density[late])) / 1000 - 1, float(np.mean(speed[late]))
-        rows.append([name, f"{study.sampled[name]:,}", percent(rest, 3), percent(float(np.nanstd(density[late])) / 1000, 3), f"{np.max(speed):.2f}", f"{1e3 * still:.2f}"])
-        for k, values in enumerate((density, speed)):
+        rows.append([name, f"{study.sampled[name]:,}", percent(rest, 3), percent(float(np.nanstd(density[late])) / 1000, 3), f"{np.max(speed):.2f}", f"{1e3 * still:.2f}", f"{1e3 * np.mean(bending[late]):.2f}"])
+        for k, values in enumerate((density, speed, np.maximum(bending, 1e-6))):
             lines[k].append((name, times, values))
         particles = int(study.number(name, "particles"))
         claim(f"mean density near the body at rest, {name} support", percent(abs(rest), 3), bar="1 %", met=abs(rest) <= 0.01)
         claim(f"mean nodal speed at rest, {name} support", f"{1e3 * still:.2f} mm/s", bar="1 % of its largest", met=still <= 0.01 * np.max(speed))
+        claim(f"the same without the ball's rigid motion, {name} support", f"{1e3 * np.mean(bending[late]):.2f} mm/s", bar="1 % of the largest speed", met=np.mean(bending[late]) <= 0.01 * np.max(speed))
     draw.curves(axes[0], lines[0], xlabel="time [s]", ylabel="kg/m^3", title="mean density of Q")
     draw.curves(axes[1], lines[1], xlabel="time [s]", ylabel="m/s", title="mean nodal speed", legend=False)
-    axes[1].set_yscale("log")
-    text = CONVERGENCE_TEXT.format(n=particles) + table(["support", "proxies, whole surface", f"density of Q / 1000 - 1, mean over t > {0.8 * end:.1f} s", "its noise", "largest mean nodal speed, m/s", "at rest, mm/s"], rows)
+    draw.curves(axes[2], lines[2], xlabel="time [s]", ylabel="m/s", title="the same without rigid motion", legend=False)
+    for ax in axes[1:]:
+        ax.set_yscale("log")
+    text = CONVERGENCE_TEXT.format(n=particles) + table(["support", "proxies, whole surface", f"density of Q / 1000 - 1, mean over t > {0.8 * end:.1f} s", "its noise", "largest mean nodal speed, m/s", "at rest, mm/s", "without rigid motion"], rows)
     return text + draw.save(figure, "convergence", "density near the body and nodal speed over time")
 
 
