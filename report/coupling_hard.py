@@ -91,7 +91,7 @@ class Outcome:
             self.result = flow(name, scene, end=end, output_every=end / 100, fields_every=end / 5, allowed=("done", "breakdown"), timeout=300)
         except Failure as failure:
             refused = re.search(r"status 2\n(.*)", str(failure), re.DOTALL)
-            self.word, self.reason = ("refused", refused.group(1)) if refused else ("no", str(failure))
+            self.word, self.reason = ("refused", refused.group(1).replace(f"{WORK}/", "")) if refused else ("no", str(failure))
             return
         self.read()
 
