@@ -274,6 +274,12 @@ def fewest():
     for k, (column, label) in enumerate(((1, "rms"), (2, "mean"))):
         ordered = sorted(points)
         axes.loglog([p[0] for p in ordered], [100 * p[column] for p in ordered], marker="os"[k], label=label)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(lambda *_: "")
+    axes.set_ylim(0.4, 4)
+    axes.set_yticks([0.5, 1, 2, 4])
+    axes.set_xticks([3000, 5000, 10000, 30000])
     axes.axhline(2, color=draw.style.MUTED, linestyle="--", linewidth=1)
     axes.set_xlabel("proxies on the whole surface")
     axes.set_title("force on the bunny: difference from fine, %")
