@@ -99,7 +99,7 @@ PetscErrorCode CouplerAddObstacle(Coupler coupler, const char name[], Proxy prox
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* what comes after an obstacle at rest, and every body, may come to lie on it */
+/* bodies may come to lie on an obstacle at rest; obstacles beside each other keep their faces, which hold water out of the slots between them */
 PetscErrorCode CouplerAddNeighbours(Coupler c)
 {
   SPHParams *params;
@@ -110,14 +110,14 @@ PetscErrorCode CouplerAddNeighbours(Coupler c)
     CouplerSurface *o = &c->surface[j];
     PetscReal       lo[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[3] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL};
 
-    if (o->moves || o->index || c->n_surfaces == 1) continue;
+    if (o->moves || o->index || !c->n_bodies) continue;
     PetscCall(SurfaceIndexCreate(o->n_nodes, o->x, o->n_triangles, o->triangles, PROXY_NEIGHBOUR_REACH * params->support * params->spacing, &o->index));
     for (PetscInt i = 0; i < 3 * o->n_nodes; i++) {
       lo[i % 3] = PetscMin(lo[i % 3], o->x[i]);
       hi[i % 3] = PetscMax(hi[i % 3], o->x[i]);
     }
     for (PetscInt k = 0; k < c->n_surfaces; k++)
-      if (c->surface[k].proxy && (k < c->n_bodies || k > j)) PetscCall(ProxyAddNeighbour(c->surface[k].proxy, o->index, lo, hi));
+      if (c->surface[k].proxy && k < c->n_bodies) PetscCall(ProxyAddNeighbour(c->surface[k].proxy, o->index, lo, hi));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
