@@ -421,7 +421,8 @@ static int ParticleHalfSpace(Chunk *c, const Proxy p, PetscInt particle, const d
 
   if (!n) return 1;
   const double phi = FadePast(p->fluid.h, touch, n, n_slots, PhiHalfSpace(p, x, base, touch, n, n_slots, slots, D, in_front, grad), grad);
-  return phi > 0.0 ? Emit(c, p, particle, x, base, phi, touch, n, D, grad) : 1;
+  // a face that lies on a wall does not act, but nothing may pass through it either: those near it are known to who stops them
+  return phi > 0.0 || p->hides ? Emit(c, p, particle, x, base, phi, touch, n, D, grad) : 1;
 }
 
 /* all particles of one chunk; 0 when memory ran out */

@@ -125,7 +125,6 @@ PetscErrorCode TLEDWatch_Private(TLED tled, const PetscReal u[], const PetscReal
   }
   PetscCall(TLEDStrain_Private(tled, u, &strain, NULL, NULL));
   strain += TLEDContactEnergy_Private(tled, u);
-  strain += TLEDContactEnergy_Private(tled, u);
   for (PetscInt a = 0; a < tled->mesh.n_nodes; a++) {
     kinetic += 0.5 * tled->mass[a] * Dot3(&v[3 * a], &v[3 * a]);
     gravity += tled->mass[a] * Dot3(tled->gravity, &u[3 * a]);
