@@ -10,8 +10,7 @@
 
 const char *const CourseNames[] = {"constant", "linear", "quadratic", "ramp", "sine", "table", NULL};
 
-/* the numbers of a line, separated by blanks, commas or semicolons; returns how many, -1 when something else stands there */
-static int ParseLine(const char line[], double value[2])
+int CourseParseLine(const char line[], int most, double value[])
 {
   const char *blanks = " \t\r\n,;";
   int         n      = 0;
@@ -20,7 +19,7 @@ static int ParseLine(const char line[], double value[2])
     char        *end;
     const double x = strtod(c, &end);
     if (end == c || (*end && !strchr(blanks, *end) && *end != '#')) return -1;
-    if (n < 2) value[n] = x;
+    if (n < most) value[n] = x;
     n++;
     c = end;
   }
@@ -49,7 +48,7 @@ static PetscErrorCode ReadRows(const char key[], FILE *file, Course *course)
 
   PetscFunctionBegin;
   while (fgets(line, sizeof line, file)) {
-    const int n = ParseLine(line, row);
+    const int n = CourseParseLine(line, 2, row);
     number++;
     if (!n || (n < 0 && !course->n && number == 1)) continue;
     if (n != 2 || !isfinite(row[0]) || !isfinite(row[1]))

@@ -39,6 +39,9 @@ BY_EXTERN const char *const CourseNames[]; /* words of CourseKind */
       "of table: CSV file of time [s] and value, straight between its rows, held beyond them"                                      \
   }
 
+/* the numbers of a line of a table, separated by blanks, commas or semicolons, # begins a comment: how many there are (the first `most` go into
+   value), -1 when something else stands there */
+BY_EXTERN int CourseParseLine(const char line[], int most, double value[]);
 /* section: the scene's section for messages ("block.plate"). User errors (a duration that is missing, a table that cannot be read or
    does not ascend) are reported with the key, BY_ERR_INPUT is returned. */
 BY_EXTERN PetscErrorCode CourseCreate(const char section[], const CourseParams *params, Course *course);

@@ -2,9 +2,8 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "course.h"
 #include "proxy/proxy_impl.h"
 
 #define KAPPA_MAX 4.0 /* as of the keys eta_max and kappa */
@@ -37,23 +36,6 @@ PetscErrorCode ProxySetDensity(Proxy p, const PetscReal kappa[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* the numbers of a line, separated by blanks, commas or semicolons; how many, -1 when something else stands there */
-static int ParseLine(const char line[], double value[4])
-{
-  const char *blanks = " \t\r\n,;";
-  int         n      = 0;
-
-  for (const char *c = line + strspn(line, blanks); *c && *c != '#'; c += strspn(c, blanks)) {
-    char        *end;
-    const double x = strtod(c, &end);
-    if (end == c || (*end && !strchr(blanks, *end) && *end != '#')) return -1;
-    if (n < 4) value[n] = x;
-    n++;
-    c = end;
-  }
-  return n;
-}
-
 /* rows of an open file; a first line of words is its heading */
 static PetscErrorCode ReadRows(const char key[], FILE *file, Rows *rows)
 {
@@ -63,7 +45,7 @@ static PetscErrorCode ReadRows(const char key[], FILE *file, Rows *rows)
 
   PetscFunctionBegin;
   while (fgets(line, sizeof(line), file)) {
-    const int n = ParseLine(line, row);
+    const int n = CourseParseLine(line, 4, row);
     number++;
     if (!n || (n < 0 && number == 1)) continue;
     if (n != 4 || !isfinite(row[0] + row[1] + row[2]) || !(row[3] > 0.0 && row[3] <= KAPPA_MAX)) {
