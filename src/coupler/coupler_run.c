@@ -173,6 +173,16 @@ static PetscErrorCode Start(Run *run, Scene scene, const char resume[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode SayAtOnce(Coupler c)
+{
+  const char *why;
+
+  PetscFunctionBegin;
+  PetscCall(CouplerGetBreakdown(c, &why));
+  PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the scene breaks down at once: %s\n", why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   CouplerRun - run a scene to its end into its run directory
 
@@ -199,6 +209,7 @@ PetscErrorCode CouplerRun(Scene scene, const char resume[])
   signal(SIGINT, OnSignal);
   signal(SIGTERM, OnSignal);
   outcome = Start(&run, scene, resume && resume[0] ? resume : NULL);
+  if (outcome == BY_ERR_BREAKDOWN) PetscCall(SayAtOnce(run.coupler)); /* while it settled: there is no state worth saving */
   if (!outcome) {
     outcome = Loop(&run);
     if (!outcome || outcome == BY_ERR_BREAKDOWN) outcome = Finish(&run, outcome);
@@ -257,10 +268,7 @@ PetscErrorCode CouplerCheck(Scene scene)
   ierr = CouplerSetFromOptions(c);
   if (!ierr) ierr = CouplerSetUp(c);
   if (!ierr) ierr = TimeSteps(c, PetscMin(params.output_every, params.end), &dt, &seconds);
-  if (ierr == BY_ERR_BREAKDOWN) {
-    PetscCall(CouplerGetBreakdown(c, &path));
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "the scene breaks down at once: %s\n", path));
-  }
+  if (ierr == BY_ERR_BREAKDOWN) PetscCall(SayAtOnce(c));
   if (!ierr) {
     PetscCall(SceneGetPath(scene, &path));
     PetscCall(PetscPrintf(PETSC_COMM_SELF, "%s is good\n", path));
