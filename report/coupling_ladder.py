@@ -181,7 +181,7 @@ def piston_picture(found):
             axes[0].loglog(*zip(*points), marker="o", markersize=4, color=style.COLOURS[k], label=name)
     axes[0].set_xlabel("water's mass over the block's")
     axes[0].set_title("error of the frequency")
-    axes[0].legend(fontsize=8)
+    axes[0].legend(fontsize=8, loc="lower left")
     for k, ratio in enumerate((0.1, 1.0, 10.0, 100.0)):
         points = [(1 / steps, found["iterated", ratio, steps].fade) for steps in STEPS if found["iterated", ratio, steps].stable]
         if points:
@@ -198,7 +198,7 @@ def piston_picture(found):
     axes[2].set_ylim(-3, 1)
     axes[2].set_xlabel("time [periods]")
     axes[2].set_title("top, r = 10 [sag at rest]")
-    axes[2].legend(fontsize=8)
+    axes[2].legend(fontsize=8, loc="lower right", frameon=True, framealpha=1)
     return draw.save(drawn, "piston", "error of the frequency over the mass ratio, loss of amplitude over the step, and what the top does at r = 10")
 
 
