@@ -79,8 +79,10 @@ static PetscErrorCode Spawn(Sweep *s, SweepPoint *p, const char command[], Petsc
   words[n++] = (char *)(uintptr_t)s->path;
   for (int i = 0; i < s->n_overrides; i++) words[n++] = s->overrides[i];
   for (PetscInt i = 0; i < p->n; i++) {
-    PetscCall(SweepKeep(s, "-", 1 + strlen(p->setting[i].option), &words[n]));
-    strcpy(words[n++] + 1, p->setting[i].option);
+    char option[PETSC_MAX_PATH_LEN];
+
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", p->setting[i].option));
+    PetscCall(SweepKeep(s, option, strlen(option), &words[n++]));
     words[n++] = p->setting[i].value;
   }
   words[n++] = directory_key;
